@@ -114,16 +114,17 @@ std::unique_ptr<FrameSource> SessionRecorder::recorded(std::unique_ptr<FrameSour
 }
 
 ScriptEvent SessionRecorder::with_mesh_kept(ScriptEvent event, const Model& model) {
-  if (event.action != Action::kAdd || event.mesh == "teapot") return event;
+  auto* const add = std::get_if<AddObject>(&event.action);
+  if (add == nullptr || add->source.mesh == "teapot") return event;
   const std::string name = "mesh-" + std::to_string(++meshes_) + kModelCopyExtension;
   std::error_code fault;
   fs::create_directories(folder_ / kMeshes, fault);
   if (fault)
     throw Error((folder_ / kMeshes).string() + ": the model cannot be copied: " + system_reason(fault));
   write_model_copy(model, folder_ / kMeshes / name);
-  event.mesh = std::string(kMeshes) + "/" + name;
-  event.size_m.reset();
-  event.up.reset();
+  add->source.mesh = std::string(kMeshes) + "/" + name;
+  add->source.size_m.reset();
+  add->source.up.reset();
   return event;
 }
 
@@ -160,9 +161,10 @@ Script read_session_events(const fs::path& file) {
   if (read_settings(file.parent_path())["format_version"] != kOldestVersion) return script;
   // In that version, an .obj had z up, and an object's origin was that of its file.
   for (ScriptEvent& event : script.events) {
-    if (event.action != Action::kAdd) continue;
-    event.origin = ModelOrigin::kAsInFile;
-    if (fs::path(event.mesh).extension() == ".obj") event.up = UpAxis::kZ;
+    auto* const add = std::get_if<AddObject>(&event.action);
+    if (add == nullptr) continue;
+    add->source.origin = ModelOrigin::kAsInFile;
+    if (fs::path(add->source.mesh).extension() == ".obj") add->source.up = UpAxis::kZ;
   }
   return script;
 }

@@ -37,8 +37,8 @@ class SessionRecorder {
 
   /// Returns a source that delivers the frames of `source` and records them. The returned source can rewind.
   [[nodiscard]] std::unique_ptr<FrameSource> recorded(std::unique_ptr<FrameSource> source) const;
-  /// Writes the model of a kAdd event into the folder, and returns the event with the copy's name. Does not
-  /// write the built-in teapot. Returns other events unchanged. Call before the object is added to the
+  /// Writes the model of an AddObject event into the folder, and returns the event with the copy's name. Does
+  /// not write the built-in teapot. Returns other events unchanged. Call before the object is added to the
   /// session. Throws Error if the model cannot be written. Callers must then not add the object, so that all
   /// objects of the run are in the recording.
   /// @param model  the model loaded for the event

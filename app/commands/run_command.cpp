@@ -48,8 +48,7 @@ void close_stream(OpenedRun& run) {
 /// Returns why all objects that a run was to drop or place are still out of the room; empty if one was in it.
 std::string why_nothing_dropped(const OpenedRun& run) {
   if (run.options.window || run.check) return {};
-  for (const ScriptEvent& event : run.script.events)
-    if (event.action == Action::kRemove) return {};  // an object may have been in the room
+  if (has<RemoveObject>(run.script)) return {};  // an object may have been in the room
   const std::vector<WaitingDrop>& waiting = run.session->waiting_drops();
   for (const auto& object : run.session->objects())
     if (object->in_room || object->departures > 0) return {};

@@ -16,6 +16,7 @@ struct ObjectSource {
   /// Axis of the file that points up; unset: the format's default, see read_model().
   std::optional<UpAxis> up{};
   ModelOrigin origin = ModelOrigin::kNear;
+  friend bool operator==(const ObjectSource&, const ObjectSource&) = default;
 };
 
 /// Throws Error with the file's name and the fault.

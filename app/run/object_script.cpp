@@ -14,7 +14,7 @@ constexpr double kDropHeight_m = 0.05;  // above a point that the user gave
 /// Returns true if an object of the script has this name.
 bool is_taken(const Script& script, const std::string& name) {
   return std::any_of(script.events.begin(), script.events.end(),
-                     [&](const ScriptEvent& event) { return event.name == name; });
+                     [&](const ScriptEvent& event) { return object_of(event.action) == name; });
 }
 
 std::string free_name(const Script& script, const ObjectOption& object) {
@@ -29,22 +29,11 @@ std::string free_name(const Script& script, const ObjectOption& object) {
 Script drop_objects(const std::vector<ObjectOption>& objects) {
   Script script;
   for (const ObjectOption& object : objects) {
-    ScriptEvent add;
-    add.frame = 0;
-    add.action = Action::kAdd;
-    add.name = objects.size() == 1 ? kOnlyObject : free_name(script, object);
-    add.mesh = object.source.mesh;
-    add.size_m = object.source.size_m;
-    add.up = object.source.up;
-    add.material = object.material;
-    ScriptEvent drop;
-    drop.frame = 0;
-    drop.action = Action::kDrop;
-    drop.name = add.name;
-    drop.position_world = object.at_world;
+    const std::string name = objects.size() == 1 ? kOnlyObject : free_name(script, object);
+    DropObject drop{.name = name, .position_world = object.at_world};
     if (object.at_world) drop.height_m = kDropHeight_m;
-    script.events.push_back(std::move(add));
-    script.events.push_back(std::move(drop));
+    script.events.push_back({.action = AddObject{name, object.source, object.material}, .frame = 0});
+    script.events.push_back({.action = drop, .frame = 0});
   }
   return script;
 }

@@ -18,12 +18,10 @@ void require_possible_in_building(const RunOptions& options, const Script& scrip
   const auto refuse = [&](const std::string& option, const char* why) {
     throw Error(option + ": " + options.map + " is a building, and " + why);
   };
-  const bool commits = std::any_of(script.events.begin(), script.events.end(),
-                                   [](const ScriptEvent& event) { return event.action == Action::kCommit; });
   constexpr const char* kRoomsOnly = "changes can be committed to the map of a room only";
   if (options.commit_after_s) refuse("--commit-changes", kRoomsOnly);
   if (!options.save_map.empty()) refuse("--save-map", kRoomsOnly);
-  if (commits) refuse("commit event", kRoomsOnly);
+  if (has<CommitChanges>(script)) refuse("commit event", kRoomsOnly);
   if (options.poses == PoseOrigin::kRecorded)
     refuse("--poses recorded", "its world is not that of a recording; leave the option out");
 }

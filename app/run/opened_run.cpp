@@ -59,11 +59,6 @@ nlohmann::json settings_of(const RunOptions& options) {
   return settings;
 }
 
-bool has(const Script& script, Action action) {
-  return std::any_of(script.events.begin(), script.events.end(),
-                     [action](const ScriptEvent& event) { return event.action == action; });
-}
-
 /// Prints the events that wait for an event above them, because they are due before it.
 void say_what_waits(const Script& script, const std::string& path) {
   std::int64_t latest_frame = 0;
@@ -83,13 +78,13 @@ Script script_of(const RunOptions& options) {
       is_session_events(options.script) ? read_session_events(options.script) : read_script(options.script);
   say_what_waits(script, options.script);
   for (ScriptEvent& event : script.events)
-    if (event.action == Action::kQuality) set_fields(event.quality, options.fixed);
+    if (auto* set = std::get_if<SetQuality>(&event.action)) set_fields(set->quality, options.fixed);
   return script;
 }
 
 void require_can_save_map(const RunOptions& options, const Script& script) {
   if (options.save_map.empty() || is_building(options.map)) return;  // a building refuses it, see open_map()
-  if (!options.commit_after_s && !has(script, Action::kCommit))
+  if (!options.commit_after_s && !has<CommitChanges>(script))
     throw Error(
         "--save-map " + options.save_map +
         ": nothing would change in the map; add --commit-changes SECONDS, or a commit event to the script");
@@ -99,7 +94,7 @@ void require_can_save_map(const RunOptions& options, const Script& script) {
 }
 
 void require_one_quality(const RunOptions& options, const Script& script) {
-  if (!has(script, Action::kQuality)) return;
+  if (!has<SetQuality>(script)) return;
   if (!options.preset.empty())
     throw Error(
         "--preset: the script or the session has quality events, which set everything that they do not name "
@@ -138,7 +133,7 @@ std::unique_ptr<FrameSource> open_frames(OpenedRun& run) {
       std::fprintf(stderr, "roomradar: %s\n", fault.c_str());
   }
   // A session that was cut off has no quit event: it is replayed as far as it has results.
-  if (run.check && !has(run.script, Action::kQuit)) run.last_frame = run.check->last_frame();
+  if (run.check && !has<Quit>(run.script)) run.last_frame = run.check->last_frame();
   run.interrupt.emplace();
   return opened;
 }
@@ -175,7 +170,7 @@ SessionConfig config_of(const OpenedRun& run, bool has_picture) {
   // A live run does not wait, unless it is recorded and must be reproducible.
   const bool waits = !run.is_live || !options.record_session.empty();
   if (config.tiles) config.tiles->wait = waits;
-  if (options.commit_after_s || has(run.script, Action::kCommit)) {
+  if (options.commit_after_s || has<CommitChanges>(run.script)) {
     config.map_updates.emplace();
     config.map_updates->after_s = options.commit_after_s;
     config.map_updates->surface = surface_config_of(run.map.info);
@@ -199,44 +194,49 @@ void make_unknown_solid(Session& session, StageTimes& times) {
 constexpr double kLarge_mb = 10.0;  // a model of this size is prepared in about 5 s
 
 /// Returns the size of a model's file, MB; 0 for the built-in teapot.
-double model_mb(const ScriptEvent& add) {
+double model_mb(const AddObject& add) {
   std::error_code failed;
-  const std::uintmax_t bytes = std::filesystem::file_size(add.mesh, failed);
+  const std::uintmax_t bytes = std::filesystem::file_size(add.source.mesh, failed);
   return failed ? 0.0 : static_cast<double>(bytes) / 1e6;
 }
 
 /// Prepares the run's first object on another thread, without its levels of detail, which are computed while
 /// the first frame is processed. Returns an empty future if there is no object, or its model is large.
 std::future<ObjectParts> first_object_of(const Script& script) {
-  const auto add = std::find_if(script.events.begin(), script.events.end(),
-                                [](const ScriptEvent& event) { return event.action == Action::kAdd; });
-  if (add == script.events.end() || model_mb(*add) > kLarge_mb) return {};
-  return std::async(std::launch::async, [add = *add] {
-    return object_parts_without_levels(add.name, object_model(source_of(add)));
-  });
+  for (const ScriptEvent& event : script.events) {
+    const auto* const add = std::get_if<AddObject>(&event.action);
+    if (add == nullptr) continue;
+    if (model_mb(*add) > kLarge_mb) return {};
+    return std::async(std::launch::async, [add = *add] {
+      return object_parts_without_levels(add.name, object_model(add.source));
+    });
+  }
+  return {};
 }
 
 /// Adds an object. A large model is announced, because preparing its levels of detail takes up to minutes.
+/// @param event  its action is `add`
 /// @param script  file in which errors are located; unused if the event is not from a file
 /// @param prepared  the object's parts; empty: not prepared
-void add_object(Session& session, const ScriptEvent& add, const std::string& script,
+void add_object(Session& session, const ScriptEvent& event, const AddObject& add, const std::string& script,
                 std::future<ObjectParts> prepared) {
   const double size_mb = model_mb(add);
   const bool is_announced = size_mb > kLarge_mb;
   if (is_announced)
-    std::fprintf(stderr, "%s: %.0f MB, preparing its levels of detail ...\n", add.mesh.c_str(), size_mb);
+    std::fprintf(stderr, "%s: %.0f MB, preparing its levels of detail ...\n", add.source.mesh.c_str(),
+                 size_mb);
   const auto start = std::chrono::steady_clock::now();
   try {
     if (prepared.valid())
-      add_object(session, add, prepared.get());
+      add_object(session, add, event.line, prepared.get());
     else
-      apply(session, add);
+      apply(session, event);
   } catch (const Error& fault) {
-    if (add.line == 0) throw;
-    throw Error(script + ":" + std::to_string(add.line) + ": " + fault.what());
+    if (event.line == 0) throw;
+    throw Error(script + ":" + std::to_string(event.line) + ": " + fault.what());
   }
   if (is_announced)
-    std::fprintf(stderr, "%s: %zu triangles, prepared in %.0f s\n", add.mesh.c_str(),
+    std::fprintf(stderr, "%s: %zu triangles, prepared in %.0f s\n", add.source.mesh.c_str(),
                  find_object(session.objects(), add.name)->model->source.mesh.triangles.size(),
                  ms_since(start) / 1e3);
 }
@@ -250,8 +250,8 @@ void open_session(OpenedRun& run, bool has_picture, std::future<ObjectParts> fir
   std::fprintf(stderr, "rendering with %s\n", run.session->renderer().c_str());
   // Objects are loaded now, so an unreadable mesh is reported before the first frame.
   for (const ScriptEvent& event : run.script.events)
-    if (event.action == Action::kAdd)
-      add_object(*run.session, event, run.options.script, std::move(first_object));
+    if (const auto* add = std::get_if<AddObject>(&event.action))
+      add_object(*run.session, event, *add, run.options.script, std::move(first_object));
   // Afterwards, since another thread computes the first object's levels of detail meanwhile.
   if (run.options.unknown_is_solid) make_unknown_solid(*run.session, run.report.times);
   for (const ObjectNotice& notice : run.session->take_notices())
@@ -274,9 +274,9 @@ void record_frames(OpenedRun& run, std::unique_ptr<FrameSource>& frames) {
                        gives_calibrated_frames(options.source, options.calibration));
   // Recorded at the start, where they were loaded: the window's user may use one before its event.
   for (const ScriptEvent& event : run.script.events)
-    if (event.action == Action::kAdd)
+    if (const auto* add = std::get_if<AddObject>(&event.action))
       run.recorder->write(
-          run.recorder->with_mesh_kept(event, find_object(run.session->objects(), event.name)->model->source),
+          run.recorder->with_mesh_kept(event, find_object(run.session->objects(), add->name)->model->source),
           0);
   frames = run.recorder->recorded(std::move(frames));
 }

@@ -115,11 +115,9 @@ std::optional<RunQuality> RunBudget::before(FramePart part, const FrameLoad& loa
   const auto changed = decide(state_, config_, part, load, begun_ms_[number] - begun_ms_[0]);
   if (!changed) return std::nullopt;
   ++all_changes_;
-  ScriptEvent& event = changes_.emplace_back();
-  event.action = Action::kQuality;
-  event.quality = front_[*changed].run;
-  event.from = part;
-  return event.quality;
+  const RunQuality& quality = front_[*changed].run;
+  changes_.push_back({SetQuality{quality, part}});
+  return quality;
 }
 
 std::vector<ScriptEvent> RunBudget::end_frame() {

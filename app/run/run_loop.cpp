@@ -9,6 +9,7 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "app/cli/progress.hpp"
@@ -70,8 +71,7 @@ class RunLoop {
         step();
     }
     say_what_never_came();
-    // a default event quits
-    if (run_.recorder && !run_.was_quit) run_.recorder->write(ScriptEvent{}, run_frame_);
+    if (run_.recorder && !run_.was_quit) run_.recorder->write({Quit{}}, run_frame_);
   }
 
  private:
@@ -123,8 +123,7 @@ RunLoop::Next RunLoop::read() {
 }
 
 void RunLoop::perform_due() {
-  if (run_.host && !run_.host->wait_turn(frame_))
-    perform(ScriptEvent{}, /*is_from_script=*/false);  // a default event quits
+  if (run_.host && !run_.host->wait_turn(frame_)) perform({Quit{}}, /*is_from_script=*/false);
   const std::vector<ScriptEvent>& events = run_.script.events;
   for (;
        !run_.was_quit && next_event_ < events.size() && is_due(events[next_event_], run_frame_, run_time_s_);
@@ -153,7 +152,7 @@ bool RunLoop::repeats_for_ever() {
 
 void RunLoop::perform(const ScriptEvent& event, bool is_from_script) {
   last_event_s_ = run_time_s_;
-  if (event.action == Action::kAdd && is_from_script)
+  if (std::holds_alternative<AddObject>(event.action) && is_from_script)
     return;  // already added and recorded before the first frame
   try {
     record(apply(event));
@@ -165,13 +164,15 @@ void RunLoop::perform(const ScriptEvent& event, bool is_from_script) {
 
 /// Applies an event and returns it in the form to be recorded.
 ScriptEvent RunLoop::apply(const ScriptEvent& event) {
-  ObjectParts parts = event.action == Action::kAdd ? run_.host->take_parts() : ObjectParts{};
+  const auto* const add = std::get_if<AddObject>(&event.action);
+  ObjectParts parts = add != nullptr ? run_.host->take_parts() : ObjectParts{};
   const ScriptEvent kept = run_.recorder ? run_.recorder->with_mesh_kept(event, parts.source) : event;
-  if (event.action == Action::kQuit) run_.was_quit = true;
-  if (event.action == Action::kCamera) control(*run_.playback, event.camera);
-  if (event.action == Action::kRadar && run_.budget) run_.budget->keep(event.radar);
-  if (event.action == Action::kAdd)
-    run_.session->add_object(event.name, std::move(parts), event.material);
+  if (std::holds_alternative<Quit>(event.action)) run_.was_quit = true;
+  if (const auto* camera = std::get_if<PlayCamera>(&event.action)) control(*run_.playback, camera->play);
+  if (const auto* set = std::get_if<SetRadar>(&event.action); set != nullptr && run_.budget)
+    run_.budget->keep(set->radar);
+  if (add != nullptr)
+    run_.session->add_object(add->name, std::move(parts), add->material);
   else
     roomradar::apply(*run_.session, event);
   return kept;
@@ -184,13 +185,14 @@ void RunLoop::record(const ScriptEvent& event) {
 void RunLoop::perform_users(const std::vector<ScriptEvent>& events) {
   std::set<std::string> not_made;
   for (const ScriptEvent& event : events) {
-    if (not_made.contains(event.name)) continue;
+    const std::string name = object_of(event.action);
+    if (not_made.contains(name)) continue;
     ScriptEvent applied;
     try {
       applied = apply(event);
     } catch (const Error& fault) {
       run_.host->complain(fault.what());
-      if (event.action == Action::kAdd) not_made.insert(event.name);
+      if (std::holds_alternative<AddObject>(event.action)) not_made.insert(name);
       continue;
     }
     // Outside the try block: an event that cannot be recorded ends the run, because replays would differ.

@@ -150,16 +150,6 @@ void PlayUi::draw_message(const Area& area) {
   draw->AddText(nullptr, 0.0F, at, look::kWarn, message_.text.c_str(), nullptr, 0.8F * area.width);
 }
 
-void PlayUi::ask_at_mouse(UserCommandKind kind) {
-  if (!picture_.pixel()) return;
-  UserCommand command;
-  command.kind = kind;
-  command.pixel = *picture_.pixel();
-  command.event.height_m = static_cast<double>(settings_.drop_height_m);
-  command.speed_mps = static_cast<double>(settings_.throw_speed_mps);
-  link_.ask(command);
-}
-
 void PlayUi::add_object() { link_.ask(new_object_command(settings_)); }
 
 void PlayUi::take_file(const std::string& path) {
@@ -175,10 +165,8 @@ void PlayUi::choose_next() {
   const auto chosen = std::find_if(shown_.objects.begin(), shown_.objects.end(),
                                    [&](const ShownObject& object) { return object.name == shown_.chosen; });
   const std::size_t at = static_cast<std::size_t>(chosen - shown_.objects.begin());
-  UserCommand command;
-  command.kind = UserCommandKind::kChoose;
-  command.event.name = shown_.chosen = shown_.objects[(at + 1) % shown_.objects.size()].name;
-  link_.ask(command);
+  shown_.chosen = shown_.objects[(at + 1) % shown_.objects.size()].name;
+  link_.ask(ChooseObject{shown_.chosen});
 }
 
 void PlayUi::set_speed(double speed) {
@@ -234,16 +222,16 @@ bool PlayUi::press_run_key(int key) {
 
 /// Executes keys for objects.
 bool PlayUi::press_object_key(int key) {
-  UserCommand command;
+  const std::optional<Eigen::Vector2d>& pixel = picture_.pixel();
   switch (key) {
     case GLFW_KEY_D:
-      ask_at_mouse(UserCommandKind::kDrop);
+      if (pixel) link_.ask(DropChosen{*pixel, static_cast<double>(settings_.drop_height_m)});
       return true;
     case GLFW_KEY_P:
-      ask_at_mouse(UserCommandKind::kPlace);
+      if (pixel) link_.ask(PlaceChosen{*pixel});
       return true;
     case GLFW_KEY_T:
-      ask_at_mouse(UserCommandKind::kThrow);
+      if (pixel) link_.ask(ThrowChosen{*pixel, static_cast<double>(settings_.throw_speed_mps)});
       return true;
     case GLFW_KEY_TAB:
       choose_next();
@@ -253,12 +241,10 @@ bool PlayUi::press_object_key(int key) {
       return true;
     case GLFW_KEY_DELETE:
     case GLFW_KEY_BACKSPACE:
-      command.kind = UserCommandKind::kRemove;
-      link_.ask(command);
+      link_.ask(RemoveChosen{});
       return true;
     case GLFW_KEY_R:
-      command.kind = UserCommandKind::kReset;
-      link_.ask(command);
+      link_.ask(ResetObjects{});
       return true;
     default:
       return false;

@@ -58,7 +58,6 @@ class PlayUi final : public WindowContent {
   FrameRate rate_;
 
   void count_rate();
-  void ask_at_mouse(UserCommandKind kind);
   void add_object();
   void choose_next();
   void press(int key, int modifiers = 0);

@@ -147,24 +147,17 @@ struct Outcome {
 
 void drop_objects(Session& session, const Eigen::Isometry3d& T_map_room, int count) {
   for (int i = 0; i < count; ++i) {
-    ScriptEvent drop;
-    drop.action = Action::kDrop;
-    drop.name = "pot" + std::to_string(i);
+    DropObject drop{.name = "pot" + std::to_string(i)};
     // On the floor where the person walks, ten per row.
     drop.position_world =
         T_map_room * Eigen::Vector3d(-0.5 + 0.19 * (i % 10), 1.5 + 0.12 * (i / 10 % 5), 0.2 * (i / 50));
     drop.height_m = 0.3 + 0.02 * (i % 7);
-    apply(session, drop);
+    apply(session, {drop});
   }
 }
 
 void remove_objects(Session& session) {
-  for (const auto& object : session.objects()) {
-    ScriptEvent remove;
-    remove.action = Action::kRemove;
-    remove.name = object->body.name;
-    apply(session, remove);
-  }
+  for (const auto& object : session.objects()) apply(session, {RemoveObject{object->body.name}});
 }
 
 /// Returns true if the floor above or below an object's centre is mapped.

@@ -188,11 +188,7 @@ double median(const test::Times& times) { return times.percentile(0.5); }
 
 void drop_if_due(Session& session, int frame) {
   if (frame % kDropEvery != 0) return;
-  ScriptEvent drop;
-  drop.action = Action::kDrop;
-  drop.name = "object";
-  drop.height_m = kDropHeight_m;
-  apply(session, drop);
+  apply(session, {DropObject{.name = "object", .height_m = kDropHeight_m}});
 }
 
 nlohmann::json bench(const Scene& scene, const SavedMap& map, const std::vector<Frame>& frames,

@@ -66,20 +66,10 @@ std::vector<Frame> frames_to_and_fro(int width_px) {
 }
 
 void play(Session& session, std::int64_t number) {
-  ScriptEvent event;
-  if (number % (10 * kRate_hz) == 60) {  // after the lying object has come to rest
-    event.action = Action::kDrop;
-    event.name = "dropped";
-    apply(session, event);
-  }
-  if (number % (15 * kRate_hz) == 100) {
-    event.action = Action::kThrow;
-    event.name = "thrown";
-    event.position_world = Eigen::Vector3d(0.2, 0.1, 1.4);
-    event.velocity_world_mps = {-1.0, 0.5, 1.0};
-    event.angular_velocity_world_rad_s = {3.0, -2.0, 1.0};
-    apply(session, event);
-  }
+  if (number % (10 * kRate_hz) == 60)  // after the lying object has come to rest
+    apply(session, {DropObject{.name = "dropped"}});
+  if (number % (15 * kRate_hz) == 100)
+    apply(session, {ThrowObject{"thrown", {0.2, 0.1, 1.4}, {-1.0, 0.5, 1.0}, {3.0, -2.0, 1.0}}});
 }
 
 /// Results of one stretch of time.
@@ -130,10 +120,7 @@ int soak(const Settings& settings) {
   session.add_object("dropped", object_mesh("teapot", 0.2));
   session.add_object("thrown", object_mesh("teapot", 0.2));
   session.add_object("lies", object_mesh("teapot", 0.2));
-  ScriptEvent drop;
-  drop.action = Action::kDrop;
-  drop.name = "lies";
-  apply(session, drop);
+  apply(session, {DropObject{.name = "lies"}});
 
   const auto frames = static_cast<std::int64_t>(settings.hours * 3600.0) * kRate_hz;
   nlohmann::json rows = nlohmann::json::array();

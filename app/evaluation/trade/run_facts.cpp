@@ -23,14 +23,11 @@ constexpr int kDropEvery = 25;
 void drop_objects(const RunScene& scene, int objects, int frame, Session& session) {
   for (int number = 0; number < objects; ++number) {
     if (frame > 0 && (frame + number * kDropEvery / objects) % kDropEvery != 0) continue;
-    ScriptEvent drop;
-    drop.action = Action::kDrop;
-    drop.name = std::to_string(number);
-    drop.height_m = 0.2;
+    DropObject drop{.name = std::to_string(number), .height_m = 0.2};
     const auto turn = static_cast<std::size_t>(frame / kDropEvery + number);
     if (!scene.drop_at_world.empty())
       drop.position_world = scene.drop_at_world[turn % scene.drop_at_world.size()];
-    apply(session, drop);
+    apply(session, {drop});
   }
 }
 

@@ -1,16 +1,15 @@
 // script.cpp: reads and writes the events file of `roomradar run --script FILE`.
 #include "app/session/script/script.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <map>
-#include <numbers>
 
 #include "app/session/script/script_line.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/format_number.hpp"
+#include "mapping/types/system/overloaded.hpp"
 
 namespace roomradar {
 namespace {
@@ -21,24 +20,6 @@ constexpr double kMaxSpeed_mps = 100.0;
 constexpr double kMaxAngular_rad_s = 1000.0;
 constexpr double kMaxTime_s = 1e6;
 
-constexpr std::array<Word<Action>, 17> kActions = {
-    {{"add", Action::kAdd},
-     {"place", Action::kPlace},
-     {"drop", Action::kDrop},
-     {"throw", Action::kThrow},
-     {"material", Action::kMaterial},
-     {"remove", Action::kRemove},
-     {"turn", Action::kTurn},
-     {"carry", Action::kCarry},
-     {"release", Action::kRelease},
-     {"surfaces", Action::kSurfaces},
-     {"unknown", Action::kUnknown},
-     {"radar", Action::kRadar},
-     {"quality", Action::kQuality},
-     {"camera", Action::kCamera},
-     {"commit", Action::kCommit},
-     {"adopt", Action::kCommit},  // of scripts of earlier versions
-     {"quit", Action::kQuit}}};
 constexpr std::array<Word<SurfacePolicy>, 4> kSurfaces = {{{"holes", SurfacePolicy::kHoles},
                                                            {"skirt", SurfacePolicy::kSkirt},
                                                            {"border", SurfacePolicy::kBorder},
@@ -57,32 +38,21 @@ constexpr std::array<Word<CameraPlay>, 6> kCameraPlays = {{{"hold", CameraPlay::
                                                            {"stay", CameraPlay::kStay},
                                                            {"resume", CameraPlay::kResume}}};
 
+std::string read_name(LineReader& line) { return std::string(line.word("the object's name")); }
+
 Eigen::Vector3d read_position(LineReader& line) {
   return line.vector("a position X Y Z (m)", kMaxCoordinate_m);
 }
 
-/// Reads the optional orientation at the end of a line.
-void read_turned(LineReader& line, ScriptEvent& event) {
-  if (!line.take_if("turned")) return;
-  event.turned_deg = line.vector("the angles YAW PITCH ROLL (degrees)", 360.0);
-  const Eigen::Vector3d angles = event.turned_deg * (std::numbers::pi / 180.0);
-  event.R_world_object = (Eigen::AngleAxisd(angles[0], Eigen::Vector3d::UnitZ()) *
-                          Eigen::AngleAxisd(angles[1], Eigen::Vector3d::UnitY()) *
-                          Eigen::AngleAxisd(angles[2], Eigen::Vector3d::UnitX()))
-                             .toRotationMatrix();
+Eigen::Vector3d read_velocity(LineReader& line) {
+  line.expect("velocity");
+  return line.vector("a velocity X Y Z (m/s)", kMaxSpeed_mps);
 }
 
-void read_quality(LineReader& line, ScriptEvent& event) {
-  if (line.take_if("from")) event.from = line.choice("a part of the frame", kFramePartWords);
-  while (!line.done()) {
-    const std::string_view name = line.word("a setting's name");
-    const std::string_view word = line.word("a setting's value");
-    try {
-      set_field(event.quality, name, word);
-    } catch (const Error& fault) {
-      line.fail(fault.what());
-    }
-  }
+/// Reads the optional orientation at the end of a line, in degrees.
+std::optional<Eigen::Vector3d> read_turned(LineReader& line) {
+  if (!line.take_if("turned")) return std::nullopt;
+  return line.vector("the angles YAW PITCH ROLL (degrees)", 360.0);
 }
 
 constexpr auto kUpAxes = [] {
@@ -104,13 +74,13 @@ bool read_material(LineReader& line, BodyMaterial& material) {
 }
 
 /// Reads the options after the mesh, in any order.
-void read_add(LineReader& line, ScriptEvent& event) {
+void read_add_options(LineReader& line, AddObject& add) {
   while (!line.done()) {
-    if (!event.size_m && line.take_if("size")) {
-      event.size_m = line.number("a size (m), 0.001..10", 0.001, 10.0);
-    } else if (!event.up && line.take_if("up")) {
-      event.up = line.choice("the axis of the file that points up", kUpAxes);
-    } else if (!read_material(line, event.material)) {
+    if (!add.source.size_m && line.take_if("size")) {
+      add.source.size_m = line.number("a size (m), 0.001..10", 0.001, 10.0);
+    } else if (!add.source.up && line.take_if("up")) {
+      add.source.up = line.choice("the axis of the file that points up", kUpAxes);
+    } else if (!read_material(line, add.material)) {
       line.fail(
           in_quotes(line.word("an option")) +
           " is not an option of add (size, up, mass, density, friction, restitution), or is given twice");
@@ -129,76 +99,128 @@ void read_when(LineReader& line, ScriptEvent& event) {
   }
 }
 
-// Not split: one case per action.
-void read_action(LineReader& line, ScriptEvent& event) {
-  event.action = line.choice("an action", kActions);
-  if (has_object(event.action)) event.name = line.word("the object's name");
-  switch (event.action) {
-    case Action::kAdd:
-      event.mesh = line.word("'teapot' or a mesh file");
-      read_add(line, event);
-      break;
-    case Action::kMaterial:
-      if (!read_material(line, event.material))
-        line.fail("'material " + event.name +
-                  "' is followed by mass, density, friction or restitution, and a number");
-      while (read_material(line, event.material)) {
-      }
-      break;
-    case Action::kPlace:
-      event.position_world = read_position(line);
-      read_turned(line, event);
-      break;
-    case Action::kCarry:
-      event.position_world = read_position(line);
-      break;
-    case Action::kDrop:
-      if (line.take_if("near")) {
-        event.near_world = read_position(line);
-      } else if (!line.take_if("view")) {
-        line.expect("at");
-        event.position_world = read_position(line);
-      }
-      if (line.take_if("height")) event.height_m = line.number("a height (m), 0..5", 0.0, 5.0);
-      read_turned(line, event);
-      break;
-    case Action::kThrow:
-      event.position_world = read_position(line);
-      line.expect("velocity");
-      event.velocity_world_mps = line.vector("a velocity X Y Z (m/s)", kMaxSpeed_mps);
-      if (line.take_if("spin"))
-        event.angular_velocity_world_rad_s = line.vector("a spin X Y Z (rad/s)", kMaxAngular_rad_s);
-      read_turned(line, event);
-      break;
-    case Action::kRelease:
-      line.expect("velocity");
-      event.velocity_world_mps = line.vector("a velocity X Y Z (m/s)", kMaxSpeed_mps);
-      break;
-    case Action::kTurn:
-      event.turn_world_deg = line.vector("a turn X Y Z (degrees about the world's axes)", kMaxTurn_deg);
-      break;
-    case Action::kSurfaces:
-      event.surfaces = line.choice("the surfaces that can be touched", kSurfaces);
-      break;
-    case Action::kUnknown:
-      event.unknown_is_solid = line.choice("the state of unknown space", kUnknown);
-      break;
-    case Action::kRadar:
-      event.radar.mode = line.choice("the radar's mode", kRadarModes);
-      event.radar.resolution_px = static_cast<int>(line.whole_number("pixels, 1..4096", 1.0, 4096.0));
-      break;
-    case Action::kQuality:
-      read_quality(line, event);
-      break;
-    case Action::kCamera:
-      event.camera = line.choice("a camera command", kCameraPlays);
-      break;
-    case Action::kRemove:
-    case Action::kCommit:
-    case Action::kQuit:
-      break;
-  }
+Action read_add(LineReader& line) {
+  AddObject add{.name = read_name(line)};
+  add.source.mesh = line.word("'teapot' or a mesh file");
+  read_add_options(line, add);
+  return add;
 }
+
+Action read_place(LineReader& line) {
+  PlaceObject place{.name = read_name(line)};
+  place.position_world = read_position(line);
+  place.turned_deg = read_turned(line);
+  return place;
+}
+
+Action read_drop(LineReader& line) {
+  DropObject drop{.name = read_name(line)};
+  if (line.take_if("near")) {
+    drop.near_world = read_position(line);
+  } else if (!line.take_if("view")) {
+    line.expect("at");
+    drop.position_world = read_position(line);
+  }
+  if (line.take_if("height")) drop.height_m = line.number("a height (m), 0..5", 0.0, 5.0);
+  drop.turned_deg = read_turned(line);
+  return drop;
+}
+
+Action read_throw(LineReader& line) {
+  ThrowObject thrown{.name = read_name(line)};
+  thrown.position_world = read_position(line);
+  thrown.velocity_world_mps = read_velocity(line);
+  if (line.take_if("spin"))
+    thrown.angular_velocity_world_rad_s = line.vector("a spin X Y Z (rad/s)", kMaxAngular_rad_s);
+  thrown.turned_deg = read_turned(line);
+  return thrown;
+}
+
+Action read_change_material(LineReader& line) {
+  ChangeMaterial change{.name = read_name(line)};
+  if (!read_material(line, change.material))
+    line.fail("'material " + change.name +
+              "' is followed by mass, density, friction or restitution, and a number");
+  while (read_material(line, change.material)) {
+  }
+  return change;
+}
+
+Action read_remove(LineReader& line) { return RemoveObject{.name = read_name(line)}; }
+
+Action read_turn(LineReader& line) {
+  TurnObject turn{.name = read_name(line)};
+  turn.turn_world_deg = line.vector("a turn X Y Z (degrees about the world's axes)", kMaxTurn_deg);
+  return turn;
+}
+
+Action read_carry(LineReader& line) {
+  CarryObject carry{.name = read_name(line)};
+  carry.position_world = read_position(line);
+  return carry;
+}
+
+Action read_release(LineReader& line) {
+  ReleaseObject release{.name = read_name(line)};
+  release.velocity_world_mps = read_velocity(line);
+  return release;
+}
+
+Action read_surfaces(LineReader& line) {
+  return SetSurfaces{line.choice("the surfaces that can be touched", kSurfaces)};
+}
+
+Action read_unknown(LineReader& line) {
+  return SetUnknown{line.choice("the state of unknown space", kUnknown)};
+}
+
+Action read_radar(LineReader& line) {
+  SetRadar set;
+  set.radar.mode = line.choice("the radar's mode", kRadarModes);
+  set.radar.resolution_px = static_cast<int>(line.whole_number("pixels, 1..4096", 1.0, 4096.0));
+  return set;
+}
+
+Action read_quality(LineReader& line) {
+  SetQuality set;
+  if (line.take_if("from")) set.from = line.choice("a part of the frame", kFramePartWords);
+  while (!line.done()) {
+    const std::string_view name = line.word("a setting's name");
+    const std::string_view word = line.word("a setting's value");
+    try {
+      set_field(set.quality, name, word);
+    } catch (const Error& fault) {
+      line.fail(fault.what());
+    }
+  }
+  return set;
+}
+
+Action read_camera(LineReader& line) { return PlayCamera{line.choice("a camera command", kCameraPlays)}; }
+
+Action read_commit(LineReader& /*line*/) { return CommitChanges{}; }
+
+Action read_quit(LineReader& /*line*/) { return Quit{}; }
+
+/// Each action's keyword, and the function that reads the words after the keyword.
+constexpr std::array<Word<Action (*)(LineReader&)>, 17> kActions = {
+    {{"add", read_add},
+     {"place", read_place},
+     {"drop", read_drop},
+     {"throw", read_throw},
+     {"material", read_change_material},
+     {"remove", read_remove},
+     {"turn", read_turn},
+     {"carry", read_carry},
+     {"release", read_release},
+     {"surfaces", read_surfaces},
+     {"unknown", read_unknown},
+     {"radar", read_radar},
+     {"quality", read_quality},
+     {"camera", read_camera},
+     {"commit", read_commit},
+     {"adopt", read_commit},  // of scripts of earlier versions
+     {"quit", read_quit}}};
 
 std::string number_word(double value) { return " " + format_number(value); }
 
@@ -214,8 +236,73 @@ std::string material_words(const BodyMaterial& material) {
   return words;
 }
 
-std::string turned_words(const ScriptEvent& event) {
-  return event.R_world_object ? " turned" + vector_words(event.turned_deg) : std::string();
+std::string turned_words(const std::optional<Eigen::Vector3d>& turned_deg) {
+  return turned_deg ? " turned" + vector_words(*turned_deg) : std::string();
+}
+
+std::string add_words(const AddObject& add) {
+  std::string words = "add " + add.name + " " + add.source.mesh;
+  if (add.source.size_m) words += " size" + number_word(*add.source.size_m);
+  if (add.source.up) words.append(" up ").append(to_string(*add.source.up));
+  return words + material_words(add.material);
+}
+
+std::string drop_words(const DropObject& drop) {
+  const std::string where = drop.position_world ? " at" + vector_words(*drop.position_world)
+                            : drop.near_world   ? " near" + vector_words(*drop.near_world)
+                                                : " view";
+  return "drop " + drop.name + where + " height" + number_word(drop.height_m) + turned_words(drop.turned_deg);
+}
+
+std::string throw_words(const ThrowObject& thrown) {
+  std::string words = "throw " + thrown.name + vector_words(thrown.position_world) + " velocity" +
+                      vector_words(thrown.velocity_world_mps);
+  if (!thrown.angular_velocity_world_rad_s.isZero(0.0))
+    words += " spin" + vector_words(thrown.angular_velocity_world_rad_s);
+  return words + turned_words(thrown.turned_deg);
+}
+
+std::string quality_words(const SetQuality& set) {
+  std::string words = "quality";
+  if (set.from != FramePart::kLocate) words.append(" from ").append(to_string(set.from));
+  for (const auto& [name, word] : words_of(set.quality)) words += " " + name + " " + word;
+  return words;
+}
+
+/// Returns the action's keyword and the words after it.
+std::string action_words(const Action& action) {
+  return std::visit(
+      overloaded{
+          [](const AddObject& add) { return add_words(add); },
+          [](const PlaceObject& place) {
+            return "place " + place.name + vector_words(place.position_world) +
+                   turned_words(place.turned_deg);
+          },
+          [](const DropObject& drop) { return drop_words(drop); },
+          [](const ThrowObject& thrown) { return throw_words(thrown); },
+          [](const ChangeMaterial& change) {
+            return "material " + change.name + material_words(change.material);
+          },
+          [](const RemoveObject& remove) { return "remove " + remove.name; },
+          [](const TurnObject& turn) { return "turn " + turn.name + vector_words(turn.turn_world_deg); },
+          [](const CarryObject& carry) { return "carry " + carry.name + vector_words(carry.position_world); },
+          [](const ReleaseObject& release) {
+            return "release " + release.name + " velocity" + vector_words(release.velocity_world_mps);
+          },
+          [](const SetSurfaces& set) { return "surfaces " + std::string(word_of(kSurfaces, set.surfaces)); },
+          [](const SetUnknown& set) { return "unknown " + std::string(word_of(kUnknown, set.is_solid)); },
+          [](const SetRadar& set) {
+            return "radar " + std::string(word_of(kRadarModes, set.radar.mode)) + " " +
+                   std::to_string(set.radar.resolution_px);
+          },
+          [](const SetQuality& set) { return quality_words(set); },
+          [](const PlayCamera& camera) {
+            return "camera " + std::string(word_of(kCameraPlays, camera.play));
+          },
+          [](const CommitChanges&) { return std::string("commit"); },
+          [](const Quit&) { return std::string("quit"); },
+      },
+      action);
 }
 
 }  // namespace
@@ -235,16 +322,16 @@ Script parse_script(std::string_view text, std::string_view where) {
     ScriptEvent event;
     event.line = number;
     read_when(line, event);
-    read_action(line, event);
+    event.action = line.choice("an action", kActions)(line);
     line.expect_end();
 
-    if (event.action == Action::kAdd) {
-      const auto [first, is_new] = added_in_line.emplace(event.name, number);
-      if (!is_new)
-        line.fail(in_quotes(event.name) + " was already added in line " + std::to_string(first->second));
-    } else if (!event.name.empty() && !added_in_line.contains(event.name)) {
-      line.fail("no object " + in_quotes(event.name) + " was added in a line above; write 'frame 0 add " +
-                event.name + " teapot' first");
+    const std::string name = object_of(event.action);
+    if (std::holds_alternative<AddObject>(event.action)) {
+      const auto [first, is_new] = added_in_line.emplace(name, number);
+      if (!is_new) line.fail(in_quotes(name) + " was already added in line " + std::to_string(first->second));
+    } else if (!name.empty() && !added_in_line.contains(name)) {
+      line.fail("no object " + in_quotes(name) + " was added in a line above; write 'frame 0 add " + name +
+                " teapot' first");
     }
     script.events.push_back(std::move(event));
   }
@@ -257,76 +344,18 @@ Script read_script(const std::filesystem::path& path, LastLine last_line) {
 
   Script script = parse_script(text, path.string());
   for (ScriptEvent& event : script.events) {
-    const bool is_file = event.action == Action::kAdd && event.mesh != "teapot";
-    if (is_file && std::filesystem::path(event.mesh).is_relative())
-      event.mesh = (path.parent_path() / event.mesh).string();
+    auto* const add = std::get_if<AddObject>(&event.action);
+    if (add == nullptr || add->source.mesh == "teapot") continue;
+    std::string& mesh = add->source.mesh;
+    if (std::filesystem::path(mesh).is_relative()) mesh = (path.parent_path() / mesh).string();
   }
   return script;
 }
 
-// Not split: one case per action.
 std::string to_line(const ScriptEvent& event) {
-  std::string line =
+  const std::string when =
       event.frame ? "frame " + std::to_string(*event.frame) : "time" + number_word(*event.time_s);
-  line.append(" ").append(word_of(kActions, event.action));
-  if (has_object(event.action)) line.append(" ").append(event.name);
-  switch (event.action) {
-    case Action::kAdd:
-      line.append(" ").append(event.mesh);
-      if (event.size_m) line += " size" + number_word(*event.size_m);
-      if (event.up) line.append(" up ").append(to_string(*event.up));
-      line += material_words(event.material);
-      break;
-    case Action::kMaterial:
-      line += material_words(event.material);
-      break;
-    case Action::kPlace:
-      line += vector_words(*event.position_world) + turned_words(event);
-      break;
-    case Action::kCarry:
-      line += vector_words(*event.position_world);
-      break;
-    case Action::kDrop:
-      line += event.position_world ? " at" + vector_words(*event.position_world)
-              : event.near_world   ? " near" + vector_words(*event.near_world)
-                                   : " view";
-      line += " height" + number_word(event.height_m) + turned_words(event);
-      break;
-    case Action::kThrow:
-      line += vector_words(*event.position_world) + " velocity" + vector_words(event.velocity_world_mps);
-      if (!event.angular_velocity_world_rad_s.isZero(0.0))
-        line += " spin" + vector_words(event.angular_velocity_world_rad_s);
-      line += turned_words(event);
-      break;
-    case Action::kRelease:
-      line += " velocity" + vector_words(event.velocity_world_mps);
-      break;
-    case Action::kTurn:
-      line += vector_words(event.turn_world_deg);
-      break;
-    case Action::kSurfaces:
-      line.append(" ").append(word_of(kSurfaces, event.surfaces));
-      break;
-    case Action::kUnknown:
-      line.append(" ").append(word_of(kUnknown, event.unknown_is_solid));
-      break;
-    case Action::kRadar:
-      line.append(" ").append(word_of(kRadarModes, event.radar.mode));
-      line += " " + std::to_string(event.radar.resolution_px);
-      break;
-    case Action::kQuality:
-      if (event.from != FramePart::kLocate) line.append(" from ").append(to_string(event.from));
-      for (const auto& [name, word] : words_of(event.quality)) line += " " + name + " " + word;
-      break;
-    case Action::kCamera:
-      line.append(" ").append(word_of(kCameraPlays, event.camera));
-      break;
-    case Action::kRemove:
-    case Action::kCommit:
-    case Action::kQuit:
-      break;
-  }
-  return line;
+  return when + " " + action_words(event.action);
 }
 
 }  // namespace roomradar

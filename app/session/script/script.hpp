@@ -1,8 +1,10 @@
 // script.hpp: reads the events file of `roomradar run --script FILE`, a list of timed actions.
 #pragma once
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "app/session/script/script_event.hpp"
@@ -15,6 +17,13 @@ namespace roomradar {
 struct Script {
   std::vector<ScriptEvent> events;
 };
+
+/// Returns true if an event of the script has this kind of action.
+template <typename Kind>
+bool has(const Script& script) {
+  return std::any_of(script.events.begin(), script.events.end(),
+                     [](const ScriptEvent& event) { return std::holds_alternative<Kind>(event.action); });
+}
 
 /// Treatment of a last line without a line end. kWhole reads the line as an event. kMayBeCut ignores the
 /// line, since its writing may have been interrupted.
@@ -61,8 +70,8 @@ Script read_script(const std::filesystem::path& path, LastLine last_line = LastL
 /// mesh paths are returned unchanged.
 Script parse_script(std::string_view text, std::string_view where);
 
-/// Returns the event as a line of an events file, without a line end. parse_script() restores all fields that
-/// the action uses exactly, except `line` and `origin`.
+/// Returns the event as a line of an events file, without a line end. parse_script() restores all fields
+/// exactly, except ScriptEvent::line and ObjectSource::origin.
 std::string to_line(const ScriptEvent& event);
 
 }  // namespace roomradar

@@ -1,23 +1,17 @@
-// script_event.cpp: tells which actions name an object, and when an event is due.
+// script_event.cpp: tells which object an action names, and when an event is due.
 #include "app/session/script/script_event.hpp"
 
 namespace roomradar {
 
-ObjectSource source_of(const ScriptEvent& add) { return {add.mesh, add.size_m, add.up, add.origin}; }
-
-bool has_object(Action action) {
-  switch (action) {
-    case Action::kSurfaces:
-    case Action::kUnknown:
-    case Action::kRadar:
-    case Action::kQuality:
-    case Action::kCamera:
-    case Action::kCommit:
-    case Action::kQuit:
-      return false;
-    default:
-      return true;
-  }
+std::string object_of(const Action& action) {
+  return std::visit(
+      [](const auto& kind) -> std::string {
+        if constexpr (requires { kind.name; })
+          return kind.name;
+        else
+          return {};
+      },
+      action);
 }
 
 bool is_due(const ScriptEvent& event, std::int64_t run_frame, double run_time_s) {

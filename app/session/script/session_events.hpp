@@ -15,12 +15,13 @@ inline constexpr const char* kOnlyObject = "object";
 std::string object_name(const std::string& mesh);
 
 /// Executes an event: adds, moves or removes an object, or changes a policy. Call it before the frame in
-/// which the event is due. Ignores kCamera and kQuit, which callers handle. Throws Error, and changes
+/// which the event is due. Ignores PlayCamera and Quit, which callers handle. Throws Error, and changes
 /// nothing, for an unknown object, a taken name, an unreadable mesh or incompatible policies. Also throws for
 /// a size refused by require_sensible_size(), and as place() and drop() do.
 void apply(Session& session, const ScriptEvent& event);
 
-/// Executes a kAdd event with the parts that object_parts() made of object_model(source_of(add)).
-void add_object(Session& session, const ScriptEvent& add, ObjectParts parts);
+/// Executes `add` with the parts that object_parts() made of object_model(add.source).
+/// @param line  ScriptEvent::line
+void add_object(Session& session, const AddObject& add, int line, ObjectParts parts);
 
 }  // namespace roomradar

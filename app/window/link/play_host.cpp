@@ -1,10 +1,9 @@
 // play_host.cpp: handles commands between frames and publishes a snapshot after each.
 #include "app/window/link/play_host.hpp"
 
-#include <algorithm>
 #include <chrono>
-#include <iterator>
 #include <new>
+#include <variant>
 
 #include "mapping/types/system/error.hpp"
 
@@ -14,11 +13,10 @@ namespace {
 constexpr int kSaidAfterFrames = 30;  // before the user is told that an object is being read
 
 /// Throws Error naming the mesh file and the fault.
-ObjectParts parts_of(const ScriptEvent& add, double room_extent_m) {
-  const ObjectSource source = source_of(add);
+ObjectParts parts_of(const ObjectSource& source, double room_extent_m) {
   Model model = object_model(source);
   require_sensible_size(model, source, {room_extent_m, "the slider \"new\" at "});
-  return object_parts(add.mesh, std::move(model));
+  return object_parts(source.mesh, std::move(model));
 }
 
 }  // namespace
@@ -35,24 +33,20 @@ std::vector<ScriptEvent> PlayHost::take_events() {
   ready_new_objects(commands);
   std::vector<ScriptEvent> events = player_.events_of(commands, session_);
   if (!player_.complaint().empty()) link_.say(player_.complaint());
-  if (is_live_ && link_.take_pause()) {
-    events.emplace_back();
-    events.back().action = Action::kCamera;
-    events.back().camera = CameraPlay::kResume;
-  }
+  if (is_live_ && link_.take_pause()) events.push_back({PlayCamera{CameraPlay::kResume}});
   return events;
 }
 
 void PlayHost::ready_new_objects(std::vector<UserCommand>& commands) {
-  const auto is_new = [](const UserCommand& command) { return command.kind == UserCommandKind::kNew; };
-  std::copy_if(commands.begin(), commands.end(), std::back_inserter(new_.waiting), is_new);
-  std::erase_if(commands, is_new);
+  for (const UserCommand& command : commands)
+    if (const auto* add = std::get_if<AddNew>(&command)) new_.waiting.push_back(*add);
+  std::erase_if(commands, [](const UserCommand& command) { return std::holds_alternative<AddNew>(command); });
   if (new_.readying.valid() && new_.readying.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
     try {
       new_.parts = new_.readying.get();
       commands.push_back(new_.waiting.front());
     } catch (const std::bad_alloc&) {
-      link_.say(new_.waiting.front().event.mesh + ": not enough memory");
+      link_.say(new_.waiting.front().source.mesh + ": not enough memory");
     } catch (const Error& fault) {
       link_.say(fault.what());
     }
@@ -60,11 +54,11 @@ void PlayHost::ready_new_objects(std::vector<UserCommand>& commands) {
   }
   if (new_.readying.valid()) {
     if (++new_.frames_waited == kSaidAfterFrames)
-      link_.say("reading " + new_.waiting.front().event.mesh + " ...");
+      link_.say("reading " + new_.waiting.front().source.mesh + " ...");
   } else if (!new_.waiting.empty()) {
     new_.frames_waited = 0;
     new_.readying =
-        std::async(std::launch::async, parts_of, new_.waiting.front().event, session_.room_extent_m());
+        std::async(std::launch::async, parts_of, new_.waiting.front().source, session_.room_extent_m());
   }
 }
 

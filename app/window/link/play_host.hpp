@@ -34,11 +34,11 @@ class PlayHost {
   /// Waits until the frame is due or the user requests a single step. Returns false if the window is closed.
   bool wait_turn(const Frame& frame);
   [[nodiscard]] bool is_closed() const { return link_.is_closed(); }
-  /// Returns the user's events since the last frame, with at most one kAdd. Meshes of added objects are read
-  /// on another thread. The kAdd is returned when its mesh has been read. A mesh that is not suitable as an
-  /// object is only reported in the window.
+  /// Returns the user's events since the last frame, with at most one AddObject. Meshes of added objects are
+  /// read on another thread. The AddObject is returned when its mesh has been read. A mesh that is not
+  /// suitable as an object is only reported in the window.
   std::vector<ScriptEvent> take_events();
-  /// Returns the ObjectParts for the last kAdd that take_events() has returned.
+  /// Returns the ObjectParts for the last AddObject that take_events() has returned.
   ObjectParts take_parts() { return std::move(new_.parts); }
   /// Sets the text on settings that the budget has reduced; empty: none.
   void say_given_up(std::string given_up) { given_up_ = std::move(given_up); }
@@ -49,7 +49,7 @@ class PlayHost {
  private:
   /// Objects that the user adds; another thread prepares them.
   struct NewObjects {
-    std::deque<UserCommand> waiting{};  ///< requests; the first one is being prepared
+    std::deque<AddNew> waiting{};  ///< requests; the first one is being prepared
     std::future<ObjectParts> readying{};
     int frames_waited = 0;  ///< frames since the first request's preparation began
     ObjectParts parts{};    ///< data of the last object that became ready

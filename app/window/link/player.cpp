@@ -5,8 +5,10 @@
 #include <cmath>
 #include <set>
 #include <utility>
+#include <variant>
 
 #include "app/session/script/session_events.hpp"
+#include "mapping/types/system/overloaded.hpp"
 
 namespace roomradar {
 namespace {
@@ -17,22 +19,16 @@ constexpr double kThrownFrom_m = 0.35;    // in front of the camera
 constexpr double kNearest_m = 0.25;       // min distance of carried objects
 constexpr double kFastest_mps = 15.0;
 
-ScriptEvent event_of(Action action, const std::string& name) {
-  ScriptEvent event;
-  event.action = action;
-  event.name = name;
-  return event;
-}
-
 /// Removes and returns the release of an object carried in the same events, and its later events. They are
 /// applied one frame later: a carry that is released at once would not move the object.
 std::vector<ScriptEvent> take_held_back(std::vector<ScriptEvent>& events) {
   std::set<std::string> carried, let_go;
   std::vector<ScriptEvent> now, later;
   for (ScriptEvent& event : events) {
-    if (event.action == Action::kCarry) carried.insert(event.name);
-    if (event.action == Action::kRelease && carried.contains(event.name)) let_go.insert(event.name);
-    (let_go.contains(event.name) ? later : now).push_back(std::move(event));
+    const std::string name = object_of(event.action);
+    if (std::holds_alternative<CarryObject>(event.action)) carried.insert(name);
+    if (std::holds_alternative<ReleaseObject>(event.action) && carried.contains(name)) let_go.insert(name);
+    (let_go.contains(name) ? later : now).push_back(std::move(event));
   }
   events = std::move(now);
   return later;
@@ -81,54 +77,36 @@ std::vector<ScriptEvent> Player::events_of(std::span<const UserCommand> commands
   std::vector<ScriptEvent> events = std::exchange(held_back_, {});
   complaint_.clear();
   choose_if_none(session);
-  for (const UserCommand& command : commands) {
-    switch (command.kind) {
-      case UserCommandKind::kEvent:
-        events.push_back(command.event);
-        break;
-      case UserCommandKind::kDrop:
-      case UserCommandKind::kPlace:
-        drop_or_place(command, session, events);
-        break;
-      case UserCommandKind::kThrow:
-        throw_chosen(command, session, events);
-        break;
-      case UserCommandKind::kGrab:
-        grab(command, session);
-        break;
-      case UserCommandKind::kDrag:
-        drag(command, session, events);
-        break;
-      case UserCommandKind::kLetGo:
-        let_go(command, session, events);
-        break;
-      case UserCommandKind::kTurn: {
-        const std::string& name = grabbed_ ? grabbed_->name : chosen_;
-        if (name.empty()) break;
-        events.push_back(command.event);
-        events.back().action = Action::kTurn;
-        events.back().name = name;
-        break;
-      }
-      case UserCommandKind::kChoose:
-        if (find_object(session.objects(), command.event.name) != nullptr) chosen_ = command.event.name;
-        break;
-      case UserCommandKind::kNew:
-        add(command, session, events);
-        break;
-      case UserCommandKind::kRemove:
-        if (!chosen_.empty()) events.push_back(event_of(Action::kRemove, chosen_));
-        if (grabbed_ && grabbed_->name == chosen_) grabbed_.reset();
-        break;
-      case UserCommandKind::kReset:
-        for (const auto& object : session.objects())  // also objects outside the room, to cancel waiting
-                                                      // drops
-          events.push_back(event_of(Action::kRemove, object->body.name));
-        if (!chosen_.empty()) events.push_back(event_of(Action::kDrop, chosen_));
-        grabbed_.reset();
-        break;
-    }
-  }
+  for (const UserCommand& command : commands)
+    std::visit(overloaded{
+                   [&](const Action& action) { events.push_back({action}); },
+                   [&](const DropChosen& drop) { drop_chosen(drop.pixel, drop.height_m, session, events); },
+                   [&](const PlaceChosen& place) { place_chosen(place, session, events); },
+                   [&](const ThrowChosen& thrown) { throw_chosen(thrown, session, events); },
+                   [&](const GrabObject& grabbed) { grab(grabbed, session); },
+                   [&](const DragGrabbed& dragged) { drag(dragged, session, events); },
+                   [&](const LetGo& released) { let_go(released, session, events); },
+                   [&](const TurnGrabbed& turn) {
+                     const std::string& name = grabbed_ ? grabbed_->name : chosen_;
+                     if (!name.empty()) events.push_back({TurnObject{name, turn.turn_world_deg}});
+                   },
+                   [&](const ChooseObject& object) {
+                     if (find_object(session.objects(), object.name) != nullptr) chosen_ = object.name;
+                   },
+                   [&](const AddNew& object) { add(object, session, events); },
+                   [&](const RemoveChosen&) {
+                     if (!chosen_.empty()) events.push_back({RemoveObject{chosen_}});
+                     if (grabbed_ && grabbed_->name == chosen_) grabbed_.reset();
+                   },
+                   [&](const ResetObjects&) {
+                     for (const auto& object : session.objects())  // also objects outside the room, to cancel
+                                                                   // waiting drops
+                       events.push_back({RemoveObject{object->body.name}});
+                     if (!chosen_.empty()) events.push_back({DropObject{.name = chosen_}});
+                     grabbed_.reset();
+                   },
+               },
+               command);
   held_back_ = take_held_back(events);
   return events;
 }
@@ -138,48 +116,54 @@ void Player::choose_if_none(const Session& session) {
   chosen_ = session.objects().empty() ? "" : session.objects().front()->body.name;
 }
 
-void Player::add(const UserCommand& command, const Session& session, std::vector<ScriptEvent>& events) {
-  const std::string& mesh = command.event.mesh;
-  const std::string stem = object_name(mesh);
+void Player::add(const AddNew& object, const Session& session, std::vector<ScriptEvent>& events) {
+  const std::string stem = object_name(object.source.mesh);
   std::string name = stem;
   for (int number = 2; find_object(session.objects(), name) != nullptr; ++number)
     name = stem + std::to_string(number);
-  ScriptEvent event = event_of(Action::kAdd, name);
-  event.mesh = mesh;
-  event.size_m = command.event.size_m;
-  event.up = command.event.up;
-  events.push_back(event);
-  events.push_back(event_of(Action::kDrop, name));
+  events.push_back({AddObject{.name = name, .source = object.source}});
+  events.push_back({DropObject{.name = name}});
   chosen_ = name;
 }
 
-void Player::drop_or_place(const UserCommand& command, const Session& session,
-                           std::vector<ScriptEvent>& events) {
+std::optional<Player::Target> Player::target_at(const Eigen::Vector2d& pixel, const Session& session) {
   const VirtualObject* object = find_object(session.objects(), chosen_);
-  const Pointed pointed = pointed_at(session, command.pixel);
-  // On top of another object if the pixel shows one.
-  const auto& hit = pointed.object && pointed.name != chosen_ ? pointed.object : pointed.surface;
+  const Pointed pointed = pointed_at(session, pixel);
+  const bool is_on_object = pointed.object && pointed.name != chosen_;
+  const auto& hit = is_on_object ? pointed.object : pointed.surface;
   if (object == nullptr || !hit) {
     complaint_ = object == nullptr       ? "there is no object to drop: choose one"
                  : !session.shown_view() ? "the camera is not located"
                                          : "there is no surface at that place";
-    return;
+    return std::nullopt;
   }
-  ScriptEvent event =
-      event_of(command.kind == UserCommandKind::kPlace ? Action::kPlace : Action::kDrop, chosen_);
-  event.height_m = command.event.height_m;
-  const bool is_on_object = &hit == &pointed.object;
-  if (command.kind != UserCommandKind::kPlace && !is_on_object) {
-    event.near_world = hit->point_world;
-  } else {
-    event.position_world = hit->point_world - level_to_middle(*object, object->body.T_world_object.linear());
-    if (command.kind == UserCommandKind::kPlace)
-      event.position_world->z() += kOverSurface_m - lowest_m(*object);
-  }
-  events.push_back(event);
+  return Target{object, hit->point_world,
+                hit->point_world - level_to_middle(*object, object->body.T_world_object.linear()),
+                is_on_object};
 }
 
-void Player::throw_chosen(const UserCommand& command, const Session& session,
+void Player::drop_chosen(const Eigen::Vector2d& pixel, double height_m, const Session& session,
+                         std::vector<ScriptEvent>& events) {
+  const auto target = target_at(pixel, session);
+  if (!target) return;
+  DropObject drop{.name = chosen_, .height_m = height_m};
+  if (target->is_on_object)
+    drop.position_world = target->position_world;
+  else
+    drop.near_world = target->point_world;
+  events.push_back({drop});
+}
+
+void Player::place_chosen(const PlaceChosen& place, const Session& session,
+                          std::vector<ScriptEvent>& events) {
+  const auto target = target_at(place.pixel, session);
+  if (!target) return;
+  PlaceObject placed{.name = chosen_, .position_world = target->position_world};
+  placed.position_world.z() += kOverSurface_m - lowest_m(*target->object);
+  events.push_back({placed});
+}
+
+void Player::throw_chosen(const ThrowChosen& command, const Session& session,
                           std::vector<ScriptEvent>& events) {
   const VirtualObject* object = find_object(session.objects(), chosen_);
   if (object == nullptr || !session.shown_view()) {
@@ -188,14 +172,14 @@ void Player::throw_chosen(const UserCommand& command, const Session& session,
   }
   const Ray ray = ray_through(session.shown_view()->camera, session.shown_view()->T_world_view,
                               command.pixel.x(), command.pixel.y());
-  ScriptEvent event = event_of(Action::kThrow, chosen_);
-  event.position_world = ray.origin_world + kThrownFrom_m * ray.direction_world -
-                         object->body.T_world_object.linear() * object->model->middle;
-  event.velocity_world_mps = std::min(command.speed_mps, kFastest_mps) * ray.direction_world;
-  events.push_back(event);
+  ThrowObject thrown{.name = chosen_};
+  thrown.position_world = ray.origin_world + kThrownFrom_m * ray.direction_world -
+                          object->body.T_world_object.linear() * object->model->middle;
+  thrown.velocity_world_mps = std::min(command.speed_mps, kFastest_mps) * ray.direction_world;
+  events.push_back({thrown});
 }
 
-void Player::grab(const UserCommand& command, const Session& session) {
+void Player::grab(const GrabObject& command, const Session& session) {
   const Pointed pointed = pointed_at(session, command.pixel);
   grabbed_.reset();
   if (!pointed.object) return;
@@ -204,28 +188,28 @@ void Player::grab(const UserCommand& command, const Session& session) {
   grabbed_ = {chosen_, pointed.object->distance_m, middle_world(object) - pointed.object->point_world, false};
 }
 
-void Player::drag(const UserCommand& command, const Session& session, std::vector<ScriptEvent>& events) {
+void Player::drag(const DragGrabbed& command, const Session& session, std::vector<ScriptEvent>& events) {
   const VirtualObject* object = grabbed_ ? find_object(session.objects(), grabbed_->name) : nullptr;
   if (object == nullptr || !session.shown_view()) return;
   const Ray ray = ray_through(session.shown_view()->camera, session.shown_view()->T_world_view,
                               command.pixel.x(), command.pixel.y());
   const double distance_m = std::max(grabbed_->distance_m - command.nearer_m, kNearest_m);
-  ScriptEvent event = event_of(Action::kCarry, grabbed_->name);
-  event.position_world = ray.origin_world + distance_m * ray.direction_world + grabbed_->middle_from_point -
+  CarryObject carry{.name = grabbed_->name};
+  carry.position_world = ray.origin_world + distance_m * ray.direction_world + grabbed_->middle_from_point -
                          object->body.T_world_object.linear() * object->model->middle;
-  events.push_back(event);
+  events.push_back({carry});
   grabbed_->is_carried = true;
 }
 
-void Player::let_go(const UserCommand& command, const Session& session, std::vector<ScriptEvent>& events) {
+void Player::let_go(const LetGo& command, const Session& session, std::vector<ScriptEvent>& events) {
   if (!grabbed_) {
-    if (!command.was_dragged) drop_or_place(command, session, events);
+    if (!command.was_dragged) drop_chosen(command.pixel, command.height_m, session, events);
     return;
   }
   const Grabbed grabbed = *grabbed_;
   grabbed_.reset();
   if (!grabbed.is_carried) return;
-  ScriptEvent event = event_of(Action::kRelease, grabbed.name);
+  ReleaseObject release{.name = grabbed.name};
   if (session.shown_view()) {
     // The mouse's speed, at the distance of the grabbed point.
     constexpr double kLately_s = 0.05;
@@ -238,9 +222,9 @@ void Player::let_go(const UserCommand& command, const Session& session, std::vec
          ray_through(camera, T_world_view, before.x(), before.y()).direction_world);
     const double speed_mps = way.norm() / kLately_s;
     if (std::isfinite(speed_mps) && speed_mps > 0.0)
-      event.velocity_world_mps = way / kLately_s * std::min(1.0, kFastest_mps / speed_mps);
+      release.velocity_world_mps = way / kLately_s * std::min(1.0, kFastest_mps / speed_mps);
   }
-  events.push_back(event);
+  events.push_back({release});
 }
 
 }  // namespace roomradar

@@ -49,18 +49,29 @@ class Player {
     Eigen::Vector3d middle_from_point = Eigen::Vector3d::Zero();
     bool is_carried = false;
   };
+  /// The chosen object, and where it would be put at a pixel.
+  struct Target {
+    const VirtualObject* object = nullptr;                     ///< the chosen object
+    Eigen::Vector3d point_world = Eigen::Vector3d::Zero();     ///< m, point of the surface at the pixel
+    Eigen::Vector3d position_world = Eigen::Vector3d::Zero();  ///< m, origin if the centre is over that point
+    bool is_on_object = false;  ///< the surface is that of another virtual object
+  };
   std::string chosen_;
   std::optional<Grabbed> grabbed_;
   std::string complaint_;
   std::vector<ScriptEvent> held_back_;  ///< events that the next call of events_of() returns
 
   void choose_if_none(const Session& session);
-  void add(const UserCommand& command, const Session& session, std::vector<ScriptEvent>& events);
-  void drop_or_place(const UserCommand& command, const Session& session, std::vector<ScriptEvent>& events);
-  void throw_chosen(const UserCommand& command, const Session& session, std::vector<ScriptEvent>& events);
-  void grab(const UserCommand& command, const Session& session);
-  void drag(const UserCommand& command, const Session& session, std::vector<ScriptEvent>& events);
-  void let_go(const UserCommand& command, const Session& session, std::vector<ScriptEvent>& events);
+  void add(const AddNew& object, const Session& session, std::vector<ScriptEvent>& events);
+  /// Returns the target at a pixel; unset, with a complaint, if there is no surface or no object is chosen.
+  std::optional<Target> target_at(const Eigen::Vector2d& pixel, const Session& session);
+  void drop_chosen(const Eigen::Vector2d& pixel, double height_m, const Session& session,
+                   std::vector<ScriptEvent>& events);
+  void place_chosen(const PlaceChosen& place, const Session& session, std::vector<ScriptEvent>& events);
+  void throw_chosen(const ThrowChosen& command, const Session& session, std::vector<ScriptEvent>& events);
+  void grab(const GrabObject& command, const Session& session);
+  void drag(const DragGrabbed& command, const Session& session, std::vector<ScriptEvent>& events);
+  void let_go(const LetGo& command, const Session& session, std::vector<ScriptEvent>& events);
 };
 
 }  // namespace roomradar

@@ -12,15 +12,16 @@ namespace {
 /// Merges mouse events that arrive faster than frames: the newest drag position replaces the last, rotations
 /// are added. Returns false if `next` must stay separate.
 bool merge(UserCommand& last, const UserCommand& next) {
-  if (last.kind != next.kind) return false;
-  if (next.kind == UserCommandKind::kDrag) {
+  if (std::holds_alternative<DragGrabbed>(last) && std::holds_alternative<DragGrabbed>(next)) {
     last = next;
     return true;
   }
-  if (next.kind != UserCommandKind::kTurn) return false;
-  const Eigen::Vector3d turn_world_deg = last.event.turn_world_deg + next.event.turn_world_deg;
+  auto* const sum = std::get_if<TurnGrabbed>(&last);
+  const auto* const turn = std::get_if<TurnGrabbed>(&next);
+  if (sum == nullptr || turn == nullptr) return false;
+  const Eigen::Vector3d turn_world_deg = sum->turn_world_deg + turn->turn_world_deg;
   if (turn_world_deg.cwiseAbs().maxCoeff() > kMaxTurn_deg) return false;
-  last.event.turn_world_deg = turn_world_deg;
+  sum->turn_world_deg = turn_world_deg;
   return true;
 }
 
@@ -28,7 +29,7 @@ bool merge(UserCommand& last, const UserCommand& next) {
 
 void UiChannel::ask(UserCommand command) {
   const std::lock_guard lock(mutex_);
-  if (is_paused_ && command.kind != UserCommandKind::kGrab)
+  if (is_paused_ && !std::holds_alternative<GrabObject>(command))
     message_ = "paused: takes effect in the next frame";
   if (commands_.empty() || !merge(commands_.back(), command)) commands_.push_back(std::move(command));
 }

@@ -15,6 +15,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "app/session/script/script.hpp"
@@ -24,35 +25,69 @@
 
 namespace roomradar {
 
-/// Kind of a user command. Pixels are in the picture. The chosen object is the one that the user selected
-/// last.
-enum class UserCommandKind {
-  kEvent,  ///< execute `event` unchanged
-  kDrop,   ///< drop the chosen object above the surface at the pixel
-  kPlace,  ///< place the chosen object on the surface at the pixel
-  kThrow,  ///< throw the chosen object from the camera towards the pixel
-  kGrab,   ///< grab and choose the object at the pixel
-  kDrag,   ///< carry the grabbed object to the pixel
-  /// Release the grabbed object. If no object was grabbed, drop the chosen object at the pixel.
-  kLetGo,
-  kTurn,    ///< rotate the grabbed object, or the chosen one if none is grabbed, by `event.turn_world_deg`
-  kChoose,  ///< choose the object `event.name`
-  kNew,     ///< add an object from `event.mesh` of size `event.size_m`, choose it and drop it in view
-  kRemove,  ///< remove the chosen object
-  kReset,   ///< remove all objects, then drop the chosen one above a surface in view
+// User commands. Pixels are in the picture. The chosen object is the one that the user selected last.
+
+/// Drops the chosen object above the surface at the pixel.
+struct DropChosen {
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+  double height_m = 0.3;  ///< DropObject::height_m
 };
 
-struct UserCommand {
-  UserCommandKind kind = UserCommandKind::kEvent;
-  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();             ///< pixel of the picture under the mouse
-  Eigen::Vector2d pixel_velocity_s = Eigen::Vector2d::Zero();  ///< velocity of the mouse, pixels per second
-  /// For kLetGo: the mouse was moved since kGrab.
-  bool was_dragged = false;
-  /// For kDrag, kLetGo: total motion towards the camera since kGrab, by the mouse wheel.
-  double nearer_m = 0.0;
-  double speed_mps = 3.0;  ///< for kThrow: speed of the object
-  ScriptEvent event;
+/// Places the chosen object on the surface at the pixel.
+struct PlaceChosen {
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
 };
+
+/// Throws the chosen object from the camera towards the pixel.
+struct ThrowChosen {
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+  double speed_mps = 3.0;
+};
+
+/// Grabs and chooses the object at the pixel.
+struct GrabObject {
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+};
+
+/// Carries the grabbed object to the pixel.
+struct DragGrabbed {
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+  double nearer_m = 0.0;  ///< total motion towards the camera since GrabObject, by the mouse wheel
+};
+
+/// Releases the grabbed object. If no object was grabbed, drops the chosen object at the pixel.
+struct LetGo {
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+  Eigen::Vector2d pixel_velocity_s = Eigen::Vector2d::Zero();  ///< velocity of the mouse, pixels per second
+  bool was_dragged = false;                                    ///< the mouse was moved since GrabObject
+  double nearer_m = 0.0;  ///< total motion towards the camera since GrabObject, by the mouse wheel
+  double height_m = 0.3;  ///< DropObject::height_m, if no object was grabbed
+};
+
+/// Rotates the grabbed object, or the chosen one if none is grabbed.
+struct TurnGrabbed {
+  Eigen::Vector3d turn_world_deg = Eigen::Vector3d::Zero();  ///< rotation vector, axis times angle
+};
+
+/// Chooses an object.
+struct ChooseObject {
+  std::string name{};
+};
+
+/// Adds an object, chooses it and drops it in view.
+struct AddNew {
+  ObjectSource source{};
+};
+
+/// Removes the chosen object.
+struct RemoveChosen {};
+
+/// Removes all objects, then drops the chosen one above a surface in view.
+struct ResetObjects {};
+
+/// An Action is executed unchanged.
+using UserCommand = std::variant<Action, DropChosen, PlaceChosen, ThrowChosen, GrabObject, DragGrabbed, LetGo,
+                                 TurnGrabbed, ChooseObject, AddNew, RemoveChosen, ResetObjects>;
 
 /// Expensive views that are computed only while they are visible, and the pixel under the mouse.
 struct ViewsWanted {

@@ -67,29 +67,23 @@ void PicturePane::leave() {
   pixel_.reset();
   if (!is_down_) return;
   is_down_ = false;
-  UserCommand command;
-  command.kind = UserCommandKind::kLetGo;
-  command.was_dragged = true;
-  command.pixel = lately_.back().pixel;
-  command.nearer_m = nearer_m_;
-  link_.ask(command);
+  link_.ask(LetGo{.pixel = lately_.back().pixel, .was_dragged = true, .nearer_m = nearer_m_});
 }
 
 void PicturePane::press_and_drag(const Eigen::Vector2d& pixel, double drop_height_m) {
   const ImVec2 mouse = ImGui::GetMousePos();
   const Eigen::Vector2d at(mouse.x, mouse.y);
   const double now_s = ImGui::GetTime();
-  UserCommand command;
-  command.pixel = pixel;
-  command.event.height_m = drop_height_m;
   if (ImGui::IsItemActive() && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
     is_down_ = true;
     was_dragged_ = ImGui::GetIO().KeyShift;  // Shift + click places at once
     pressed_at_ = at;
     nearer_m_ = 0.0;
     lately_.fill({now_s, pixel});
-    command.kind = ImGui::GetIO().KeyShift ? UserCommandKind::kPlace : UserCommandKind::kGrab;
-    link_.ask(command);
+    if (ImGui::GetIO().KeyShift)
+      link_.ask(PlaceChosen{pixel});
+    else
+      link_.ask(GrabObject{pixel});
     return;
   }
   if (!is_down_) return;
@@ -105,15 +99,11 @@ void PicturePane::press_and_drag(const Eigen::Vector2d& pixel, double drop_heigh
     if (!was_dragged_ || ImGui::GetIO().KeyShift) return;
     const ImVec2 way = ImGui::GetIO().MouseDelta;
     if (way.x == 0.0F && way.y == 0.0F && wheel == 0.0F) return;
-    command.kind = UserCommandKind::kDrag;
+    link_.ask(DragGrabbed{pixel, nearer_m_});
   } else {
     is_down_ = false;
-    command.kind = UserCommandKind::kLetGo;
-    command.was_dragged = was_dragged_;
-    command.pixel_velocity_s = velocity_px_s();
+    link_.ask(LetGo{pixel, velocity_px_s(), was_dragged_, nearer_m_, drop_height_m});
   }
-  command.nearer_m = nearer_m_;
-  link_.ask(command);
 }
 
 Eigen::Vector2d PicturePane::velocity_px_s() const {
@@ -133,11 +123,8 @@ void PicturePane::turn(const Snapshot& shown) {
   if (!ImGui::IsMouseDown(ImGuiMouseButton_Right) || !shown.view) return;
   const ImVec2 way = ImGui::GetIO().MouseDelta;
   if (way.x == 0.0F && way.y == 0.0F) return;
-  UserCommand command;
-  command.kind = UserCommandKind::kTurn;
-  command.event.turn_world_deg =
-      turn_of_drag_world_deg(shown.view->T_world_view.linear(), Eigen::Vector2d(way.x, way.y));
-  link_.ask(command);
+  link_.ask(
+      TurnGrabbed{turn_of_drag_world_deg(shown.view->T_world_view.linear(), Eigen::Vector2d(way.x, way.y))});
 }
 
 }  // namespace roomradar

@@ -12,12 +12,6 @@
 namespace roomradar {
 namespace {
 
-UserCommand command_of(Action action) {
-  UserCommand command;
-  command.event.action = action;
-  return command;
-}
-
 void draw_objects(const Snapshot& shown, UiChannel& link, PlaySettings& settings, const look::Fonts& fonts) {
   look::heading("OBJECTS", fonts);
   for (const ShownObject& object : shown.objects) {
@@ -25,10 +19,7 @@ void draw_objects(const Snapshot& shown, UiChannel& link, PlaySettings& settings
     const bool is_chosen = object.name == shown.chosen;
     const ImVec2 at = ImGui::GetCursorScreenPos();
     if (ImGui::Selectable("##choose", is_chosen, 0, {0.0F, look::px(34.0F)})) {
-      UserCommand command;
-      command.kind = UserCommandKind::kChoose;
-      command.event.name = object.name;
-      link.ask(command);
+      link.ask(ChooseObject{object.name});
     }
     ImDrawList* draw = ImGui::GetWindowDrawList();
     const ImU32 dot = !object.in_room     ? look::kLine
@@ -41,17 +32,11 @@ void draw_objects(const Snapshot& shown, UiChannel& link, PlaySettings& settings
                   look::kDim, what_it_does(object).c_str());
     ImGui::PopID();
   }
-  const auto ask = [&](UserCommandKind kind) {
-    UserCommand command;
-    command.kind = kind;
-    link.ask(command);
-  };
   // The scrollbar of a low window leaves less width.
   const float half = 0.5F * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
-  if (look::button("Remove", "Del", false, {half, 0.0F}, !shown.objects.empty()))
-    ask(UserCommandKind::kRemove);
+  if (look::button("Remove", "Del", false, {half, 0.0F}, !shown.objects.empty())) link.ask(RemoveChosen{});
   ImGui::SameLine();
-  if (look::button("Reset", "R", false, {half, 0.0F}, !shown.objects.empty())) ask(UserCommandKind::kReset);
+  if (look::button("Reset", "R", false, {half, 0.0F}, !shown.objects.empty())) link.ask(ResetObjects{});
   ImGui::SetNextItemWidth(half);
   const auto short_name = [](const std::string& mesh) { return mesh.substr(mesh.find_last_of('/') + 1); };
   if (ImGui::BeginCombo("##mesh", short_name(settings.meshes[settings.mesh].mesh).c_str())) {
@@ -169,45 +154,21 @@ void draw_frame_facts(const Snapshot& shown, const look::Fonts& fonts) {
 }  // namespace
 
 UserCommand new_object_command(const PlaySettings& settings) {
-  UserCommand command;
-  command.kind = UserCommandKind::kNew;
-  const ObjectSource& source = settings.meshes[settings.mesh];
-  command.event.mesh = source.mesh;
-  command.event.size_m = source.size_m;
-  command.event.up = source.up;
-  if (settings.new_size_m >= 0.001F) command.event.size_m = static_cast<double>(settings.new_size_m);
-  return command;
+  AddNew add{settings.meshes[settings.mesh]};
+  if (settings.new_size_m >= 0.001F) add.source.size_m = static_cast<double>(settings.new_size_m);
+  return add;
 }
 
-UserCommand surfaces_command(SurfacePolicy surfaces) {
-  UserCommand command = command_of(Action::kSurfaces);
-  command.event.surfaces = surfaces;
-  return command;
-}
+UserCommand surfaces_command(SurfacePolicy surfaces) { return SetSurfaces{surfaces}; }
 
-UserCommand unknown_command(bool is_solid) {
-  UserCommand command = command_of(Action::kUnknown);
-  command.event.unknown_is_solid = is_solid;
-  return command;
-}
+UserCommand unknown_command(bool is_solid) { return SetUnknown{is_solid}; }
 
-UserCommand radar_command(const RadarConfig& radar) {
-  UserCommand command = command_of(Action::kRadar);
-  command.event.radar = radar;
-  return command;
-}
+UserCommand radar_command(const RadarConfig& radar) { return SetRadar{radar}; }
 
-UserCommand camera_command(CameraPlay camera) {
-  UserCommand command = command_of(Action::kCamera);
-  command.event.camera = camera;
-  return command;
-}
+UserCommand camera_command(CameraPlay camera) { return PlayCamera{camera}; }
 
 UserCommand material_command(const std::string& object, const BodyMaterial& change) {
-  UserCommand command = command_of(Action::kMaterial);
-  command.event.name = object;
-  command.event.material = change;
-  return command;
+  return ChangeMaterial{object, change};
 }
 
 void draw_side_panel(const Area& area, const Snapshot& shown, UiChannel& link, PlaySettings& settings,

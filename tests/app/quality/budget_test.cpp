@@ -346,10 +346,10 @@ TEST(RunBudget, SaysWhatItGaveUpAndRecordsItAsEvents) {
     for (const ScriptEvent& event : budget.end_frame()) events.push_back(event);
   }
   ASSERT_FALSE(events.empty());
-  EXPECT_EQ(events.front().action, Action::kQuality);
-  EXPECT_EQ(events.front().quality.depth_stride, 2);
-  EXPECT_EQ(events.front().quality.radar, RadarMode::kSampled) << "the user's";
-  EXPECT_EQ(events.front().quality.radar_px, 32);
+  const RunQuality& quality = std::get<SetQuality>(events.front().action).quality;
+  EXPECT_EQ(quality.depth_stride, 2);
+  EXPECT_EQ(quality.radar, RadarMode::kSampled) << "the user's";
+  EXPECT_EQ(quality.radar_px, 32);
   EXPECT_EQ(budget.given_up(), "depth_stride 2");
   EXPECT_EQ(budget.news(), "budget 20 ms: with depth_stride 2");
   EXPECT_EQ(budget.news(), "") << "once";

@@ -70,15 +70,8 @@ class FrameUseInASession : public ::testing::Test {
       for (int x = 40; x < 40 + width_px; ++x) frame_.depth_m.at(x, y) = 0.9F;
   }
   void put_a_pot(double z, double speed_mps) {
-    ScriptEvent event;
-    event.name = "pot";
-    event.mesh = "teapot";
-    event.action = Action::kAdd;
-    apply(session_, event);
-    event.action = Action::kThrow;
-    event.position_world = Eigen::Vector3d(0.0, 0.0, z);
-    event.velocity_world_mps = Eigen::Vector3d(0.0, 0.0, speed_mps);
-    apply(session_, event);
+    apply(session_, {AddObject{.name = "pot", .source = {.mesh = "teapot"}}});
+    apply(session_, {ThrowObject{"pot", {0.0, 0.0, z}, {0.0, 0.0, speed_mps}}});
   }
 
   SavedMap map_;

@@ -109,19 +109,11 @@ TEST(Extremes, ManyTurnsByAUserKeepARotation) {
   write_mesh(box_mesh({0.05F, 0.08F, 0.03F}), folder.path() / "box.ply");
   const SavedMap map = floor_map();
   Session session(map, {});
-  ScriptEvent add;
-  add.action = Action::kAdd;
-  add.name = "box";
-  add.mesh = folder.path() / "box.ply";
-  apply(session, add);
-  ScriptEvent place = add;
-  place.action = Action::kPlace;
-  place.position_world = Vec3(0, 0, 2.0);
-  place.R_world_object = (1.0 + 1e-9) * Eigen::Matrix3d::Identity();  // not quite a rotation at the start
-  apply(session, place);
-  ScriptEvent turn = add;
-  turn.action = Action::kTurn;
-  turn.turn_world_deg = Vec3(0.7, -1.3, 2.1);
+  apply(session, {AddObject{.name = "box", .source = {.mesh = folder.path() / "box.ply"}}});
+  // Not quite a rotation at the start.
+  session.place("box", {.position_world = Vec3(0, 0, 2.0),
+                        .R_world_object = (1.0 + 1e-9) * Eigen::Matrix3d::Identity()});
+  const ScriptEvent turn{TurnObject{"box", {0.7, -1.3, 2.1}}};
   double worst = 0.0;
   for (int i = 0; i < turns; ++i) {
     apply(session, turn);
@@ -213,15 +205,8 @@ Frame sky(std::int64_t index, double stamp_s) {
 class Thrown {
  public:
   Thrown() : session_(map_, config()) {
-    ScriptEvent event;
-    event.action = Action::kAdd;
-    event.name = "pot";
-    event.mesh = "teapot";
-    apply(session_, event);
-    event.action = Action::kThrow;
-    event.position_world = Vec3(0, 0, 3.0);
-    event.velocity_world_mps = Vec3(0, 0, -20.0);
-    apply(session_, event);
+    apply(session_, {AddObject{.name = "pot", .source = {.mesh = "teapot"}}});
+    apply(session_, {ThrowObject{"pot", {0, 0, 3.0}, {0, 0, -20.0}}});
   }
   void step(double stamp_s) {
     result = session_.step(sky(index_++, stamp_s), times_);

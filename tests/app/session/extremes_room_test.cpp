@@ -73,14 +73,8 @@ Dropped drop_pot(const SavedMap& map, const Vec3& onto_world) {
   config.poses = PoseOrigin::kRecorded;
   config.make_picture = false;
   Session session(map, config);
-  ScriptEvent event;
-  event.action = Action::kAdd;
-  event.name = "pot";
-  event.mesh = "teapot";
-  apply(session, event);
-  event.action = Action::kDrop;
-  event.position_world = onto_world;
-  apply(session, event);
+  apply(session, {AddObject{.name = "pot", .source = {.mesh = "teapot"}}});
+  apply(session, {DropObject{.name = "pot", .position_world = onto_world}});
   Frame frame;
   frame.depth_camera = {64, 48, 58.5, 58.5, 31.5, 23.5};
   frame.depth_m.resize(64, 48, 0.0F);

@@ -94,13 +94,8 @@ Outcome scan_and_run(const SimOptions& options, const Alter& alter) {
   SessionConfig config;
   config.make_picture = false;
   Session session(scan.map, config);
-  ScriptEvent event;
-  event.action = Action::kAdd;
-  event.name = "pot";
-  event.mesh = "teapot";
-  apply(session, event);
-  event.action = Action::kDrop;
-  apply(session, event);
+  apply(session, {AddObject{.name = "pot", .source = {.mesh = "teapot"}}});
+  apply(session, {DropObject{.name = "pot"}});
   const VirtualObject& pot = *session.objects().front();
   const auto height_m = [&] { return (T_room_map * pot.body.T_world_object.translation()).z(); };
   double began_m = 0.0;

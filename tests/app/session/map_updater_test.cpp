@@ -79,16 +79,8 @@ class UpdatingSession {
   }
   void make_unknown_solid() { session.make_unknown_solid(times_); }
   void drop_pot(const Vector3d& above) {
-    ScriptEvent event;
-    event.name = "pot";
-    event.mesh = "teapot";
-    event.size_m = 0.1;
-    event.action = Action::kAdd;
-    apply(session, event);
-    event.action = Action::kDrop;
-    event.position_world = above;
-    event.height_m = 0.03;
-    apply(session, event);
+    apply(session, {AddObject{.name = "pot", .source = {.mesh = "teapot", .size_m = 0.1}}});
+    apply(session, {DropObject{.name = "pot", .position_world = above, .height_m = 0.03}});
   }
   /// Height of the pot's lowest point.
   [[nodiscard]] double pot_m() const {
@@ -105,11 +97,7 @@ class UpdatingSession {
   Session session;
 };
 
-void ask(Session& session) {
-  ScriptEvent event;
-  event.action = Action::kCommit;
-  apply(session, event);
-}
+void ask(Session& session) { apply(session, {CommitChanges{}}); }
 
 TEST(Adopt, ACrateThatCameHoldsAPotAlsoWhenAHandHidesIt) {
   SavedMap map = map_of("0");

@@ -47,18 +47,16 @@ SessionConfig by_recorded_poses() {
   return config;
 }
 
-ScriptEvent event(Action action) {
-  ScriptEvent event;
-  event.action = action;
-  event.name = "pot";
-  event.mesh = "teapot";
-  return event;
+ScriptEvent add_teapot(const std::string& name = "pot") {
+  return {AddObject{.name = name, .source = {.mesh = "teapot"}}};
 }
+
+ScriptEvent drop_in_view(const std::string& name = "pot") { return {DropObject{.name = name}}; }
 
 /// Requests the drop of a pot while no level surface is in view.
 void let_a_drop_wait(Session& session, StageTimes& times) {
-  apply(session, event(Action::kAdd));
-  apply(session, event(Action::kDrop));
+  apply(session, add_teapot());
+  apply(session, drop_in_view());
   static_cast<void>(session.step(depth_only(0, kAtTheSky), times));
 }
 
@@ -181,7 +179,7 @@ TEST(Session, WhatIsMeasuredHidesAnObjectBehindItWhereTheMapKnowsNothing) {
   const SavedMap map = floor_map();
   Session session(map, by_recorded_poses());
   StageTimes times;
-  apply(session, event(Action::kAdd));
+  apply(session, add_teapot());
   for (std::int64_t i = 0; i < 4; ++i) {
     Frame frame = depth_only(i, kAtTheSky);
     for (int y = 0; y < kCamera.height_px; ++y)
@@ -208,7 +206,7 @@ TEST(Session, WhatIsMeasuredHoldsAnObjectUpWhereTheMapKnowsNothing) {
   for (const bool has_box : {true, false}) {
     Session session(map, by_recorded_poses());
     StageTimes times;
-    apply(session, event(Action::kAdd));
+    apply(session, add_teapot());
     Frame frame = depth_only(0, kAtTheFloor);
     for (int y = 0; y < kCamera.height_px; ++y) {
       for (int x = 0; x < kCamera.width_px; ++x) {
@@ -302,9 +300,7 @@ TEST(Session, ADropThatWaitsOutlivesATurnOfWhatIsNotInTheRoom) {
   Session session(map, by_recorded_poses());
   StageTimes times;
   let_a_drop_wait(session, times);
-  ScriptEvent turn = event(Action::kTurn);
-  turn.turn_world_deg = Eigen::Vector3d(0.0, 0.0, 30.0);
-  apply(session, turn);
+  apply(session, {TurnObject{"pot", {0.0, 0.0, 30.0}}});
   see_the_floor(session, times);
   EXPECT_TRUE(session.objects().front()->in_room);
 }
@@ -314,7 +310,7 @@ TEST(Session, RemovedObjectDoesNotComeInByADropThatWaited) {
   Session session(map, by_recorded_poses());
   StageTimes times;
   let_a_drop_wait(session, times);
-  apply(session, event(Action::kRemove));
+  apply(session, {RemoveObject{"pot"}});
   see_the_floor(session, times);
   EXPECT_FALSE(session.objects().front()->in_room);
 }
@@ -324,11 +320,8 @@ TEST(Session, DropsThatWaitAreNotTriedAllInOneFrame) {
   Session session(map, by_recorded_poses());
   StageTimes times;
   for (const char* const name : {"one", "two", "three"}) {
-    ScriptEvent drop = event(Action::kAdd);
-    drop.name = name;
-    apply(session, drop);
-    drop.action = Action::kDrop;
-    apply(session, drop);
+    apply(session, add_teapot(name));
+    apply(session, drop_in_view(name));
   }
   static_cast<void>(session.step(depth_only(0, kAtTheSky), times));
   const auto& waiting = session.waiting_drops();
@@ -344,8 +337,8 @@ TEST(Session, NothingIsDroppedOntoASurfaceThatSomethingStandsBefore) {
   const SavedMap map = floor_map();
   Session session(map, by_recorded_poses());
   StageTimes times;
-  apply(session, event(Action::kAdd));
-  apply(session, event(Action::kDrop));
+  apply(session, add_teapot());
+  apply(session, drop_in_view());
   Frame full = depth_only(0, kAtTheFloor);  // a person in front of all of the floor
   for (float& depth_m : full.depth_m.pixels) depth_m *= 0.6F;
   static_cast<void>(session.step(full, times));
@@ -369,7 +362,7 @@ TEST(Session, WhereAMeshHasItsOriginDoesNotMatterForADropInView) {
     StageTimes times;
     session.add_object(
         "pot", is_about_corner ? box_about_its_corner(0.4F) : shapes::box(Eigen::Vector3f::Constant(0.4F)));
-    apply(session, event(Action::kDrop));
+    apply(session, drop_in_view());
     static_cast<void>(session.step(depth_only(0, kAtTheFloor), times));
     const VirtualObject& object = *session.objects().front();
     ASSERT_TRUE(object.in_room);
@@ -382,7 +375,7 @@ TEST(Session, WhereAMeshHasItsOriginDoesNotMatterForADropInView) {
   // Its farthest corner is 1.13 m sideways from its origin, and 0.57 m from its centre.
   Session session(map, by_recorded_poses());
   session.add_object("pot", box_about_its_corner(0.8F));
-  EXPECT_NO_THROW(apply(session, event(Action::kDrop)));
+  EXPECT_NO_THROW(apply(session, drop_in_view()));
 }
 
 TEST(Session, WhatIsTurnedWhileItIsCarriedTurnsAboutItsMiddle) {
@@ -392,14 +385,10 @@ TEST(Session, WhatIsTurnedWhileItIsCarriedTurnsAboutItsMiddle) {
   session.add_object("pot", box_about_its_corner(0.2F));
   const VirtualObject& object = *session.objects().front();
   const auto middle = [&]() -> Eigen::Vector3d { return object.body.T_world_object * object.model->middle; };
-  ScriptEvent carry = event(Action::kCarry);
-  carry.position_world = Eigen::Vector3d(0.0, 0.0, 0.8);
-  apply(session, carry);
+  apply(session, {CarryObject{"pot", {0.0, 0.0, 0.8}}});
   for (std::int64_t i = 0; i < 5; ++i) static_cast<void>(session.step(depth_only(i, kAtTheSky), times));
   const Eigen::Vector3d before = middle();
-  ScriptEvent turn = event(Action::kTurn);
-  turn.turn_world_deg = Eigen::Vector3d(90.0, 0.0, 0.0);
-  apply(session, turn);
+  apply(session, {TurnObject{"pot", {90.0, 0.0, 0.0}}});
   for (std::int64_t i = 5; i < 10; ++i) static_cast<void>(session.step(depth_only(i, kAtTheSky), times));
   EXPECT_GT(Eigen::AngleAxisd(object.body.T_world_object.linear()).angle(), 1.5);
   EXPECT_LT((middle() - before).norm(), 1e-3);
@@ -409,21 +398,14 @@ TEST(Session, OneThatSpinsOnAndOnDoesNotKeepTheOthersFromTheirShadows) {
   const SavedMap map = floor_map();
   Session session(map, by_recorded_poses());
   StageTimes times;
-  for (const char* const name : {"rests", "spins"}) {
-    ScriptEvent add = event(Action::kAdd);
-    add.name = name;
-    apply(session, add);
-  }
-  ScriptEvent put = event(Action::kPlace);
-  put.name = "rests";
-  put.position_world = Eigen::Vector3d(0.0, 0.0, 0.001);
-  put.R_world_object = Eigen::AngleAxisd(1.5, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  apply(session, put);
-  put = event(Action::kThrow);
-  put.name = "spins";
-  put.position_world = Eigen::Vector3d(0.5, 0.0, -5.0);  // below the floor, where it falls without end
-  put.angular_velocity_world_rad_s = Eigen::Vector3d(0.0, 0.0, 10.0);
-  apply(session, put);
+  for (const char* const name : {"rests", "spins"}) apply(session, add_teapot(name));
+  session.place("rests",
+                {.position_world = {0.0, 0.0, 0.001},
+                 .R_world_object = Eigen::AngleAxisd(1.5, Eigen::Vector3d::UnitZ()).toRotationMatrix()});
+  ThrowObject spins{.name = "spins"};
+  spins.position_world = Eigen::Vector3d(0.5, 0.0, -5.0);  // below the floor, where it falls without end
+  spins.angular_velocity_world_rad_s = Eigen::Vector3d(0.0, 0.0, 10.0);
+  apply(session, {spins});
   for (std::int64_t i = 0; i < 40; ++i) static_cast<void>(session.step(in_colour(i, kAtTheFloor), times));
   ASSERT_TRUE(session.objects()[0]->body.asleep);
   ASSERT_FALSE(session.objects()[1]->body.asleep);
@@ -449,14 +431,9 @@ SavedMap half_floor_map() {
 /// Drops a pot on each of the positions.
 void drop_pots(Session& session, const std::vector<Eigen::Vector3d>& over_world) {
   for (std::size_t i = 0; i < over_world.size(); ++i) {
-    ScriptEvent drop = event(Action::kAdd);
-    drop.name = "pot" + std::to_string(i);
-    drop.size_m = 0.08;
-    apply(session, drop);
-    drop.action = Action::kDrop;
-    drop.position_world = over_world[i];
-    drop.height_m = 0.3;
-    apply(session, drop);
+    const std::string name = "pot" + std::to_string(i);
+    apply(session, {AddObject{.name = name, .source = {.mesh = "teapot", .size_m = 0.08}}});
+    apply(session, {DropObject{.name = name, .position_world = over_world[i], .height_m = 0.3}});
   }
 }
 
@@ -525,38 +502,29 @@ TEST(Session, AQualityThatWasDueInALostFrameHoldsFromThereOn) {
   const SavedMap map = floor_map();
   Session session(map, by_recorded_poses());
   StageTimes times;
-  ScriptEvent change = event(Action::kQuality);
-  change.quality.shadow_every_n_frames = 7;
-  change.from = FramePart::kCompose;
-  apply(session, change);
+  apply(session, {SetQuality{{.shadow_every_n_frames = 7}, FramePart::kCompose}});
   ASSERT_EQ(session.step(depth_only(0, std::nullopt), times).status, FrameStatus::kNotLocated);
   EXPECT_EQ(session.config().shadow_every_n_frames, 7);
 }
 
 TEST(Session, AnObjectIsShovedByOneThatIsThrownAndByOneThatIsCarried) {
   const SavedMap map = half_floor_map();
-  for (const Action how : {Action::kThrow, Action::kCarry}) {
+  for (const bool is_thrown : {true, false}) {
     Session session(map, by_recorded_poses());
     drop_pots(session, {{-1.0, 0.0, 0.0}, {-1.4, 0.0, 0.0}});
     go_on(session, 0, 45);
     const Body& shoved = session.objects().front()->body;
     ASSERT_TRUE(shoved.asleep);
     const Eigen::Vector3d stood = shoved.T_world_object.translation();
-    ScriptEvent shove = event(how);
-    shove.name = "pot1";
+    if (is_thrown) apply(session, {ThrowObject{"pot1", {-1.3, 0.0, 0.01}, {2.0, 0.0, 0.0}}});
     for (int frame = 0; frame < 30; ++frame) {
-      const double x = how == Action::kThrow ? -1.3 : -1.4 + 0.02 * frame;
-      shove.position_world = Eigen::Vector3d(x, 0.0, 0.01);
-      shove.velocity_world_mps = Eigen::Vector3d(2.0, 0.0, 0.0);
-      if (frame == 0 || how == Action::kCarry) apply(session, shove);
+      if (!is_thrown) apply(session, {CarryObject{"pot1", {-1.4 + 0.02 * frame, 0.0, 0.01}}});
       go_on(session, 45 + frame, 1);
     }
     EXPECT_GT(shoved.T_world_object.translation().x() - stood.x(), 0.02)
-        << (how == Action::kThrow ? "thrown" : "carried");
-    EXPECT_LT(std::abs(shoved.T_world_object.translation().y()), 0.2)
-        << (how == Action::kThrow ? "thrown" : "carried");
-    EXPECT_GT(shoved.T_world_object.translation().z(), -0.05)
-        << (how == Action::kThrow ? "thrown" : "carried");
+        << (is_thrown ? "thrown" : "carried");
+    EXPECT_LT(std::abs(shoved.T_world_object.translation().y()), 0.2) << (is_thrown ? "thrown" : "carried");
+    EXPECT_GT(shoved.T_world_object.translation().z(), -0.05) << (is_thrown ? "thrown" : "carried");
   }
 }
 
@@ -583,12 +551,18 @@ TEST(Session, PotsDroppedIntoOnePlaceBeginOnTopOfOneAnotherAndComeToLieApart) {
     EXPECT_GT((pot->body.T_world_object * pot->model->middle).z(), 0.0) << pot->body.name;
 }
 
-/// Returns the initial height above the floor of the bottom of the second of two bodies, in a room with an
-/// optional shelf at shelf_z_m.
+enum class How { kDrop, kPlace, kThrow };
 struct Put {
-  Action how = Action::kPlace;
+  How how = How::kPlace;
   Eigen::Vector3d at_world{-1.0, 0.0, 0.3};
 };
+Action action_of(const std::string& name, const Put& put) {
+  if (put.how == How::kDrop) return DropObject{.name = name, .position_world = put.at_world};
+  if (put.how == How::kThrow) return ThrowObject{.name = name, .position_world = put.at_world};
+  return PlaceObject{.name = name, .position_world = put.at_world};
+}
+/// Returns the initial height above the floor of the bottom of the second of two bodies, in a room with an
+/// optional shelf at shelf_z_m.
 double begins_at_m(const std::pair<Mesh, Put>& first, const std::pair<Mesh, Put>& second,
                    std::optional<float> shelf_z_m = {}, bool faces_down = false) {
   SavedMap map = half_floor_map();
@@ -601,12 +575,9 @@ double begins_at_m(const std::pair<Mesh, Put>& first, const std::pair<Mesh, Put>
   }
   Session session(map, by_recorded_poses());
   for (const auto& [mesh, put] : {first, second}) {
-    ScriptEvent event;
-    event.action = put.how;
-    event.name = std::to_string(session.objects().size());
-    event.position_world = put.at_world;
-    session.add_object(event.name, mesh);
-    apply(session, event);
+    const std::string name = std::to_string(session.objects().size());
+    session.add_object(name, mesh);
+    apply(session, {action_of(name, put)});
   }
   const VirtualObject& put = *session.objects().back();
   return put.body.T_world_object.translation().z() + lowest_m(put);
@@ -617,16 +588,16 @@ TEST(Session, WhatIsPutIntoAnotherObjectBeginsOnTopOfItUnlessTheRoomIsInTheWay) 
   const Mesh crate = shapes::box({0.2F, 0.2F, 0.2F});
   const double on_chest_m = 0.55 + PhysicsConfig{}.contact_margin_m;
   const std::pair chest_there{chest, Put{}};  // from 0.05 to 0.55 m above the floor
-  for (const Action how : {Action::kDrop, Action::kPlace, Action::kThrow}) {
-    const Eigen::Vector3d at(-1.0, 0.0, how == Action::kDrop ? 0.0 : 0.3);
+  for (const How how : {How::kDrop, How::kPlace, How::kThrow}) {
+    const Eigen::Vector3d at(-1.0, 0.0, how == How::kDrop ? 0.0 : 0.3);
     EXPECT_NEAR(begins_at_m(chest_there, {pot, {how, at}}), on_chest_m, 2e-5) << "wholly inside";
   }
   EXPECT_NEAR(begins_at_m(chest_there, {chest, {}}), on_chest_m, 2e-5) << "where its like stands";
-  EXPECT_NEAR(begins_at_m(chest_there, {chest, {Action::kPlace, {-0.9, 0.0, 0.3}}}), on_chest_m, 2e-5);
-  EXPECT_NEAR(begins_at_m({crate, {}}, {chest, {Action::kPlace, {-1.0, 0.1, 0.3}}}),
+  EXPECT_NEAR(begins_at_m(chest_there, {chest, {How::kPlace, {-0.9, 0.0, 0.3}}}), on_chest_m, 2e-5);
+  EXPECT_NEAR(begins_at_m({crate, {}}, {chest, {How::kPlace, {-1.0, 0.1, 0.3}}}),
               0.4 + PhysicsConfig{}.contact_margin_m, 2e-5)
       << "wholly about it";
-  const double pot_in_chest_m = begins_at_m({crate, {Action::kPlace, {1.0, 0.0, 0.3}}}, {pot, {}});
+  const double pot_in_chest_m = begins_at_m({crate, {How::kPlace, {1.0, 0.0, 0.3}}}, {pot, {}});
   for (const bool faces_down : {false, true}) {
     EXPECT_NEAR(begins_at_m(chest_there, {pot, {}}, 0.57F, faces_down), pot_in_chest_m, 1e-9) << faces_down;
     EXPECT_NEAR(begins_at_m(chest_there, {pot, {}}, 0.7F, faces_down), on_chest_m, 2e-5) << faces_down;
@@ -639,7 +610,7 @@ TEST(Session, WhatIsPutFlushBesideAnotherObjectStaysThere) {
   for (const Eigen::Vector3d& beside : {Eigen::Vector3d(0.2, 0.0, 0.0), Eigen::Vector3d(0.0, -0.2, 0.0),
                                         Eigen::Vector3d(0.0, 0.0, 0.2), Eigen::Vector3d(0.2, 0.2, 0.0)}) {
     const Eigen::Vector3d at = Eigen::Vector3d(-1.0, 0.0, 0.3) + beside;
-    EXPECT_NEAR(begins_at_m({crate, {}}, {crate, {Action::kPlace, at}}), at.z() - 0.1, 1e-6)
+    EXPECT_NEAR(begins_at_m({crate, {}}, {crate, {How::kPlace, at}}), at.z() - 0.1, 1e-6)
         << beside.transpose();
   }
 }
@@ -648,14 +619,12 @@ TEST(Session, WhatIsTooLargeForAnyPlaceInViewIsRefusedInWords) {
   const SavedMap map = floor_map();
   Session session(map, by_recorded_poses());
   session.add_object("pot", shapes::box({85.0F, 90.0F, 120.0F}));
-  const std::string fault = test::error_of([&] { apply(session, event(Action::kDrop)); });
+  const std::string fault = test::error_of([&] { apply(session, drop_in_view()); });
   EXPECT_NE(fault.find("pot: reaches 61.9 m sideways"), std::string::npos) << fault;
   EXPECT_NE(fault.find("Make it smaller, in metres"), std::string::npos) << fault;
   // A rejected drop changes nothing.
-  ScriptEvent carry = event(Action::kCarry);
-  carry.position_world = Eigen::Vector3d(0, 0, 100);
-  apply(session, carry);
-  EXPECT_NE(test::error_of([&] { apply(session, event(Action::kDrop)); }), "");
+  apply(session, {CarryObject{"pot", {0, 0, 100}}});
+  EXPECT_NE(test::error_of([&] { apply(session, drop_in_view()); }), "");
   EXPECT_TRUE(session.objects().front()->carried_to_world);
 }
 
@@ -666,10 +635,8 @@ TEST(Session, WhatTheRadarLookedAtIsCountedAcrossAChangeOfRadar) {
   go_on(session, 0, 20);
   StageTimes times;
   for (std::int64_t i = 20; i < 30; ++i) {
-    ScriptEvent change = event(Action::kQuality);
-    change.quality.radar = i % 2 == 0 ? RadarMode::kSampled : RadarMode::kExact;
-    change.from = FramePart::kPhysics;
-    apply(session, change);
+    const RunQuality quality{.radar = i % 2 == 0 ? RadarMode::kSampled : RadarMode::kExact};
+    apply(session, {SetQuality{quality, FramePart::kPhysics}});
     Frame frame = depth_only(i, kAtTheSky);
     frame.depth_m = DepthImage(kCamera.width_px, kCamera.height_px, 0.0F);
     EXPECT_LE(session.step(frame, times).use.room_asked, 1000U) << i;
@@ -700,11 +667,8 @@ struct Thrown {
 /// Throws a pot from a position and returns its state after one and a half seconds without any depth.
 Thrown thrown(Session& session, const Eigen::Vector3d& from_world, double up_mps) {
   StageTimes times;
-  apply(session, event(Action::kAdd));
-  ScriptEvent put = event(Action::kThrow);
-  put.position_world = from_world;
-  put.velocity_world_mps = Eigen::Vector3d(0.0, 0.0, up_mps);
-  apply(session, put);
+  apply(session, add_teapot());
+  apply(session, {ThrowObject{"pot", from_world, {0.0, 0.0, up_mps}}});
   Thrown result{*session.objects().front()};
   for (std::int64_t i = 0; i < 45; ++i) {
     Frame frame = depth_only(i, kAtTheSky);
@@ -781,9 +745,7 @@ TEST(Session, WhatIsSetBackToAPlaceThatIsTakenComesToLieOnWhatTookIt) {
   ASSERT_TRUE(pot.body.asleep);
   const Eigen::Vector3d place_world = pot.body.T_world_object.translation();
   session.throw_object(pot.body.name, {.position_world = {1.0, 0.0, 0.3}});  // over the half without floor
-  ScriptEvent add = event(Action::kAdd);
-  add.name = "other";
-  apply(session, add);
+  apply(session, add_teapot("other"));
   session.throw_object("other", {.position_world = place_world});
   const VirtualObject& other = *session.objects().back();
   (void)wait(session, 45, 75);
@@ -1104,7 +1066,7 @@ TEST(Session, NothingIsPutIntoUnscannedSpaceUnlessItIsThrown) {
   Session session(map, by_recorded_poses());
   StageTimes times;
   session.make_unknown_solid(times);
-  apply(session, event(Action::kAdd));
+  apply(session, add_teapot());
   VirtualObject& pot = *session.objects().front();
   const std::string name = pot.body.name;
   // Deep below the floor nothing near is free; beyond the map there is nothing at all.

@@ -39,11 +39,7 @@ SavedMap floor_map() {
 class Playing : public ::testing::Test {
  protected:
   void SetUp() override {
-    ScriptEvent add;
-    add.action = Action::kAdd;
-    add.name = "pot";
-    add.mesh = "teapot";
-    apply(session_, add);
+    apply(session_, {AddObject{.name = "pot", .source = {.mesh = "teapot"}}});
     step();
   }
   void step() {
@@ -61,18 +57,11 @@ class Playing : public ::testing::Test {
     step();
     return events;
   }
-  static UserCommand command(UserCommandKind kind, const Vec3& p_world = Vec3::Zero()) {
-    UserCommand command;
-    command.kind = kind;
-    command.pixel = project(kCamera, kAtTheFloor.inverse() * p_world);
-    return command;
+  /// Pixel of the picture at which a point appears.
+  static Eigen::Vector2d pixel_of(const Vec3& p_world) {
+    return project(kCamera, kAtTheFloor.inverse() * p_world);
   }
-  static UserCommand new_teapot() {
-    UserCommand command;
-    command.kind = UserCommandKind::kNew;
-    command.event.mesh = "teapot";
-    return command;
-  }
+  static AddNew new_teapot() { return {{.mesh = "teapot"}}; }
   [[nodiscard]] const VirtualObject& pot() const { return *session_.objects().front(); }
   [[nodiscard]] Vec3 position() const { return pot().body.T_world_object.translation(); }
   /// Centre of the pot, where it appears in the picture.
@@ -94,53 +83,49 @@ class Playing : public ::testing::Test {
 
 TEST_F(Playing, AnObjectIsDroppedWhereOneClicks) {
   const Vec3 there(0.3, 0.2, 0.0);
-  EXPECT_TRUE(play(command(UserCommandKind::kGrab, there)).empty());  // there is nothing to grab
-  UserCommand click = command(UserCommandKind::kLetGo, there);
-  click.event.height_m = 0.25;
-  const auto events = play(click);
+  EXPECT_TRUE(play(GrabObject{.pixel = pixel_of(there)}).empty());  // there is nothing to grab
+  const auto events = play(LetGo{.pixel = pixel_of(there), .height_m = 0.25});
   ASSERT_EQ(events.size(), 1U);
-  EXPECT_EQ(events[0].action, Action::kDrop);
-  EXPECT_EQ(events[0].name, "pot");
-  EXPECT_FALSE(events[0].position_world);
-  ASSERT_TRUE(events[0].near_world);
-  EXPECT_LT((*events[0].near_world - there).norm(), 1e-6);
-  EXPECT_EQ(events[0].height_m, 0.25);
+  const auto& drop = std::get<DropObject>(events[0].action);
+  EXPECT_EQ(drop.name, "pot");
+  EXPECT_FALSE(drop.position_world);
+  ASSERT_TRUE(drop.near_world);
+  EXPECT_LT((*drop.near_world - there).norm(), 1e-6);
+  EXPECT_EQ(drop.height_m, 0.25);
   for (int i = 0; i < 60; ++i) step();
   EXPECT_TRUE(pot().body.asleep);
   EXPECT_LT((middle() - there).head<2>().norm(), 0.03);  // places are 2 cm apart
 }
 
 TEST_F(Playing, AnObjectIsPlacedOntoTheSurface) {
-  const auto events = play(command(UserCommandKind::kPlace, {-0.4, 0.1, 0.0}));
+  const auto events = play(PlaceChosen{.pixel = pixel_of({-0.4, 0.1, 0.0})});
   ASSERT_EQ(events.size(), 1U);
-  EXPECT_EQ(events[0].action, Action::kPlace);
-  EXPECT_NEAR(events[0].position_world->z() + lowest_m(pot()), 0.002, 1e-6);
+  const Vec3 position_world = std::get<PlaceObject>(events[0].action).position_world;
+  EXPECT_NEAR(position_world.z() + lowest_m(pot()), 0.002, 1e-6);
   const Vec3 to_middle = level_to_middle(pot(), Eigen::Matrix3d::Identity());
-  EXPECT_NEAR(events[0].position_world->x() + to_middle.x(), -0.4, 1e-6);
+  EXPECT_NEAR(position_world.x() + to_middle.x(), -0.4, 1e-6);
 }
 
 TEST_F(Playing, WhatIsTurnedWhileItIsDraggedStaysUnderTheMouse) {
-  play(command(UserCommandKind::kPlace, Vec3::Zero()));
-  play(command(UserCommandKind::kGrab, middle()));
+  play(PlaceChosen{.pixel = pixel_of(Vec3::Zero())});
+  play(GrabObject{.pixel = pixel_of(middle())});
   const Vec3 there = middle() + Vec3(0.0, 0.0, 0.3);
-  for (int i = 0; i < 10; ++i) play(command(UserCommandKind::kDrag, there));
+  for (int i = 0; i < 10; ++i) play(DragGrabbed{.pixel = pixel_of(there)});
   const Vec3 held = middle();
-  UserCommand turn = command(UserCommandKind::kTurn);
-  turn.event.turn_world_deg = Vec3(90.0, 0.0, 0.0);
-  play(turn);
-  for (int i = 0; i < 3; ++i) play(command(UserCommandKind::kDrag, there));
+  play(TurnGrabbed{{90.0, 0.0, 0.0}});
+  for (int i = 0; i < 3; ++i) play(DragGrabbed{.pixel = pixel_of(there)});
   EXPECT_LT((middle() - held).norm(), 0.005);
 }
 
 TEST_F(Playing, WhatIsDraggedFollowsTheMouseAndStopsAtTheFloor) {
-  play(command(UserCommandKind::kPlace, Vec3::Zero()));
+  play(PlaceChosen{.pixel = pixel_of(Vec3::Zero())});
   for (int i = 0; i < 30; ++i) step();
-  ASSERT_TRUE(play(command(UserCommandKind::kGrab, middle())).empty());
+  ASSERT_TRUE(play(GrabObject{.pixel = pixel_of(middle())}).empty());
   EXPECT_TRUE(player_.is_grabbed());
   // Half a metre to the right and up, at the distance at which it was grabbed.
   const Vec3 before = position();
   const double distance_m = (middle() - kAtTheFloor.translation()).norm();
-  for (int i = 1; i <= 10; ++i) play(command(UserCommandKind::kDrag, middle() + Vec3(0.05, 0.0, 0.04)));
+  for (int i = 1; i <= 10; ++i) play(DragGrabbed{.pixel = pixel_of(middle() + Vec3(0.05, 0.0, 0.04))});
   for (int i = 0; i < 3; ++i) step();
   EXPECT_GT(position().x(), before.x() + 0.2);
   EXPECT_GT(position().z(), before.z() + 0.1);
@@ -149,122 +134,107 @@ TEST_F(Playing, WhatIsDraggedFollowsTheMouseAndStopsAtTheFloor) {
   for (int i = 0; i < 20; ++i) step();
   EXPECT_LT((position() - held).norm(), 1e-6) << "it hangs in the air while it is held";
   // This would carry it through the floor if nothing stopped it.
-  for (int i = 0; i < 10; ++i) play(command(UserCommandKind::kDrag, {0.3, -0.4, 0.0}));
+  for (int i = 0; i < 10; ++i) play(DragGrabbed{.pixel = pixel_of({0.3, -0.4, 0.0})});
   EXPECT_GT(position().z() + lowest_m(pot()), -1e-6);
-  const auto events = play(command(UserCommandKind::kLetGo, {0.3, -0.4, 0.0}));
+  const auto events = play(LetGo{.pixel = pixel_of({0.3, -0.4, 0.0})});
   ASSERT_EQ(events.size(), 1U);
-  EXPECT_EQ(events[0].action, Action::kRelease);
+  EXPECT_TRUE(std::holds_alternative<ReleaseObject>(events[0].action));
   EXPECT_FALSE(player_.is_grabbed());
   EXPECT_FALSE(pot().carried_to_world);
 }
 
 TEST_F(Playing, WhatIsDraggedAndLetGoBetweenTwoFramesIsCarriedThere) {
-  play(command(UserCommandKind::kPlace, Vec3::Zero()));
+  play(PlaceChosen{.pixel = pixel_of(Vec3::Zero())});
   for (int i = 0; i < 30; ++i) step();
   const Vec3 before = position(), way(0.2, 0.0, 0.3);
-  const std::vector<UserCommand> commands = {command(UserCommandKind::kGrab, middle()),
-                                             command(UserCommandKind::kDrag, middle() + way),
-                                             command(UserCommandKind::kLetGo, middle() + way)};
+  const std::vector<UserCommand> commands = {GrabObject{.pixel = pixel_of(middle())},
+                                             DragGrabbed{.pixel = pixel_of(middle() + way)},
+                                             LetGo{.pixel = pixel_of(middle() + way)}};
   const std::vector<ScriptEvent> first = player_.events_of(commands, session_);
   ASSERT_EQ(first.size(), 1U);
-  EXPECT_EQ(first[0].action, Action::kCarry);
+  EXPECT_TRUE(std::holds_alternative<CarryObject>(first[0].action));
   apply(session_, first[0]);
   step();
   EXPECT_GT((position() - before).norm(), 0.2);
   const std::vector<ScriptEvent> second = player_.events_of({}, session_);
   ASSERT_EQ(second.size(), 1U);
-  EXPECT_EQ(second[0].action, Action::kRelease);
+  EXPECT_TRUE(std::holds_alternative<ReleaseObject>(second[0].action));
   EXPECT_TRUE(player_.events_of({}, session_).empty());
 }
 
 TEST_F(Playing, RemovingAnotherObjectDoesNotLeaveTheHeldOneHanging) {
-  play(command(UserCommandKind::kPlace, Vec3::Zero()));
+  play(PlaceChosen{.pixel = pixel_of(Vec3::Zero())});
   play(new_teapot());
-  play(command(UserCommandKind::kPlace, Vec3(0.5, 0.0, 0.0)));
-  play(command(UserCommandKind::kGrab, middle()));
-  play(command(UserCommandKind::kDrag, middle() + Vec3(0.0, 0.0, 0.2)));
+  play(PlaceChosen{.pixel = pixel_of(Vec3(0.5, 0.0, 0.0))});
+  play(GrabObject{.pixel = pixel_of(middle())});
+  play(DragGrabbed{.pixel = pixel_of(middle() + Vec3(0.0, 0.0, 0.2))});
   ASSERT_TRUE(pot().carried_to_world);
-  UserCommand choose = command(UserCommandKind::kChoose);
-  choose.event.name = "teapot";
-  play(choose);
-  ASSERT_EQ(play(command(UserCommandKind::kRemove)).at(0).name, "teapot");
+  play(ChooseObject{"teapot"});
+  ASSERT_EQ(object_of(play(RemoveChosen{}).at(0).action), "teapot");
   EXPECT_TRUE(player_.is_grabbed());
-  play(command(UserCommandKind::kLetGo, middle()));
+  play(LetGo{.pixel = pixel_of(middle())});
   EXPECT_FALSE(pot().carried_to_world);
 }
 
 TEST_F(Playing, WhatIsLetGoInMotionFliesOnAsFastAsTheMouseWas) {
-  play(command(UserCommandKind::kPlace, Vec3::Zero()));
-  play(command(UserCommandKind::kGrab, middle()));
-  play(command(UserCommandKind::kDrag, middle() + Vec3(0.0, 0.0, 0.2)));
-  UserCommand let_go = command(UserCommandKind::kLetGo, middle() + Vec3(0.02, 0.0, 0.2));
+  play(PlaceChosen{.pixel = pixel_of(Vec3::Zero())});
+  play(GrabObject{.pixel = pixel_of(middle())});
+  play(DragGrabbed{.pixel = pixel_of(middle() + Vec3(0.0, 0.0, 0.2))});
+  LetGo let_go{.pixel = pixel_of(middle() + Vec3(0.02, 0.0, 0.2))};
   let_go.pixel_velocity_s = {146.0, 0.0};  // one metre per second, at a distance of one metre
   const auto events = play(let_go);
   ASSERT_EQ(events.size(), 1U);
   const double distance_m = (middle() - kAtTheFloor.translation()).norm();
-  EXPECT_NEAR(events[0].velocity_world_mps.x(), distance_m, 0.15 * distance_m);
-  EXPECT_NEAR(events[0].velocity_world_mps.y(), 0.0, 0.1);
+  const Vec3 velocity_world_mps = std::get<ReleaseObject>(events[0].action).velocity_world_mps;
+  EXPECT_NEAR(velocity_world_mps.x(), distance_m, 0.15 * distance_m);
+  EXPECT_NEAR(velocity_world_mps.y(), 0.0, 0.1);
 }
 
 TEST_F(Playing, AThrownObjectFliesThroughThePixel) {
-  UserCommand command = Playing::command(UserCommandKind::kThrow, {0.5, 0.5, 0.0});
-  command.speed_mps = 4.0;
-  const auto events = play(command);
+  const auto events = play(ThrowChosen{pixel_of({0.5, 0.5, 0.0}), /*speed_mps=*/4.0});
   ASSERT_EQ(events.size(), 1U);
-  EXPECT_NEAR(events[0].velocity_world_mps.norm(), 4.0, 1e-9);
+  const Vec3 velocity_world_mps = std::get<ThrowObject>(events[0].action).velocity_world_mps;
+  EXPECT_NEAR(velocity_world_mps.norm(), 4.0, 1e-9);
   const Vec3 to_there = Vec3(0.5, 0.5, 0.0) - kAtTheFloor.translation();
-  EXPECT_NEAR(events[0].velocity_world_mps.normalized().dot(to_there.normalized()), 1.0, 1e-9);
+  EXPECT_NEAR(velocity_world_mps.normalized().dot(to_there.normalized()), 1.0, 1e-9);
 }
 
 TEST_F(Playing, AnotherObjectHasANameOfItsOwnAndIsChosen) {
   const auto events = play(new_teapot());
   ASSERT_EQ(events.size(), 2U);
-  EXPECT_EQ(events[0].action, Action::kAdd);
-  EXPECT_EQ(events[0].name, "teapot");
+  EXPECT_EQ(std::get<AddObject>(events[0].action).name, "teapot");
   EXPECT_EQ(player_.chosen(), "teapot");
-  EXPECT_EQ(play(new_teapot())[0].name, "teapot2");
+  EXPECT_EQ(object_of(play(new_teapot())[0].action), "teapot2");
   EXPECT_EQ(session_.objects().size(), 3U);
-  const auto reset = play(command(UserCommandKind::kReset));
-  EXPECT_EQ(reset.back().action, Action::kDrop);
-  EXPECT_EQ(reset.back().name, "teapot2");
+  const auto reset = play(ResetObjects{});
+  EXPECT_EQ(std::get<DropObject>(reset.back().action).name, "teapot2");
 }
 
 TEST_F(Playing, ResetLeavesNoDropWaiting) {
-  for (const Action action : {Action::kAdd, Action::kDrop}) {
-    ScriptEvent other;
-    other.action = action;
-    other.name = "other";
-    other.mesh = "teapot";
-    apply(session_, other);  // its drop waits for the next frame
-  }
-  (void)play(command(UserCommandKind::kReset));
+  apply(session_, {AddObject{.name = "other", .source = {.mesh = "teapot"}}});
+  apply(session_, {DropObject{.name = "other"}});  // waits for the next frame
+  (void)play(ResetObjects{});
   EXPECT_TRUE(session_.objects()[0]->in_room);
   EXPECT_FALSE(session_.objects()[1]->in_room);
 }
 
 TEST_F(Playing, WhereThereIsNothingTheUserIsTold) {
-  const UserCommand at_the_sky = command(UserCommandKind::kDrop, {0.0, 40.0, 0.0});
+  const UserCommand at_the_sky = DropChosen{.pixel = pixel_of({0.0, 40.0, 0.0})};
   EXPECT_TRUE(play(at_the_sky).empty());
   EXPECT_NE(player_.complaint().find("no surface"), std::string::npos);
-  EXPECT_EQ(play(command(UserCommandKind::kDrop)).size(), 1U);
+  EXPECT_EQ(play(DropChosen{.pixel = pixel_of(Vec3::Zero())}).size(), 1U);
   EXPECT_TRUE(player_.complaint().empty());
 }
 
 TEST_F(Playing, UnknownSpaceIsSolidWithTheMapsSurfacesOnly) {
-  ScriptEvent solid, skirt;
-  solid.action = Action::kUnknown;
-  solid.unknown_is_solid = true;
-  skirt.action = Action::kSurfaces;
-  skirt.surfaces = SurfacePolicy::kSkirt;
-  apply(session_, skirt);
+  const ScriptEvent solid{SetUnknown{.is_solid = true}};
+  apply(session_, {SetSurfaces{SurfacePolicy::kSkirt}});
   EXPECT_EQ(session_.config().scene.surfaces, SurfacePolicy::kSkirt);
   EXPECT_THROW(apply(session_, solid), Error);
   EXPECT_FALSE(session_.unknown_is_solid());
-  skirt.surfaces = SurfacePolicy::kMap;
-  apply(session_, skirt);
+  apply(session_, {SetSurfaces{SurfacePolicy::kMap}});
   apply(session_, solid);
   EXPECT_TRUE(session_.unknown_is_solid());
-  skirt.surfaces = SurfacePolicy::kHoles;
   const auto has_border = [&] {
     const std::vector<SceneTree> surfaces = session_.scene().surfaces();
     return std::any_of(surfaces.begin(), surfaces.end(), [](const SceneTree& surface) {
@@ -272,10 +242,9 @@ TEST_F(Playing, UnknownSpaceIsSolidWithTheMapsSurfacesOnly) {
     });
   };
   EXPECT_TRUE(has_border());
-  apply(session_, skirt);  // and back again
+  apply(session_, {SetSurfaces{SurfacePolicy::kHoles}});  // and back again
   EXPECT_FALSE(has_border());
-  skirt.surfaces = SurfacePolicy::kMap;
-  apply(session_, skirt);
+  apply(session_, {SetSurfaces{SurfacePolicy::kMap}});
   EXPECT_TRUE(has_border());
 }
 
@@ -340,19 +309,19 @@ class Hosted : public Playing {
 };
 
 TEST_F(Hosted, ANewObjectComesOnceItIsReadyAndTheSameAsOneThatWasWaitedFor) {
-  UserCommand command = new_teapot();
-  command.event.size_m = 0.25;  // no model of that size exists yet
+  AddNew command = new_teapot();
+  command.source.size_m = 0.25;  // no model of that size exists yet
   link_.ask(command);
   EXPECT_TRUE(host_.take_events().empty());  // it takes longer than this
   const std::vector<ScriptEvent> events = awaited_events();
   ASSERT_EQ(events.size(), 2U);
-  EXPECT_EQ(events[0].action, Action::kAdd);
-  EXPECT_EQ(events[1].action, Action::kDrop);
-  session_.add_object(events[0].name, host_.take_parts());
+  EXPECT_TRUE(std::holds_alternative<AddObject>(events[0].action));
+  EXPECT_TRUE(std::holds_alternative<DropObject>(events[1].action));
+  session_.add_object(object_of(events[0].action), host_.take_parts());
   const ObjectModel& model = *session_.objects().back()->model;
-  ScriptEvent waited_for = events[0];
+  auto waited_for = std::get<AddObject>(events[0].action);
   waited_for.name = "another";
-  apply(session_, waited_for);
+  apply(session_, {waited_for});
   EXPECT_EQ(session_.objects().back()->model.get(), &model);  // same mesh, so it shares the model
   const ObjectParts parts = object_parts("pot", object_mesh("teapot", 0.25));
   ASSERT_EQ(model.levels().size(), parts.levels->size());
@@ -361,19 +330,17 @@ TEST_F(Hosted, ANewObjectComesOnceItIsReadyAndTheSameAsOneThatWasWaitedFor) {
 }
 
 TEST_F(Hosted, AMeshThatCannotBeReadIsSaidAndThoseAfterItCome) {
-  UserCommand broken = new_teapot();
-  broken.event.mesh = "/nowhere/chair.ply";
-  link_.ask(broken);
+  link_.ask(AddNew{{.mesh = "/nowhere/chair.ply"}});
   link_.ask(new_teapot());
   link_.ask(new_teapot());
   std::vector<ScriptEvent> events = awaited_events();
   ASSERT_EQ(events.size(), 2U);
-  EXPECT_EQ(events[0].mesh, "teapot");
+  EXPECT_EQ(std::get<AddObject>(events[0].action).source.mesh, "teapot");
   EXPECT_NE(said_.find("/nowhere/chair.ply"), std::string::npos);
-  session_.add_object(events[0].name, host_.take_parts());
+  session_.add_object(object_of(events[0].action), host_.take_parts());
   events = awaited_events();
   ASSERT_EQ(events.size(), 2U);
-  EXPECT_EQ(events[0].name, "teapot2");
+  EXPECT_EQ(object_of(events[0].action), "teapot2");
 }
 
 TEST_F(Hosted, AfterAPauseADevicesTimeGoesOnWhereItWas) {
@@ -384,8 +351,7 @@ TEST_F(Hosted, AfterAPauseADevicesTimeGoesOnWhereItWas) {
     link_.set_paused(is_paused);
     const std::vector<ScriptEvent> events = host_.take_events();
     ASSERT_EQ(events.size(), 1U);
-    EXPECT_EQ(events[0].action, Action::kCamera);
-    EXPECT_EQ(events[0].camera, CameraPlay::kResume);
+    EXPECT_EQ(events[0].action, Action(PlayCamera{CameraPlay::kResume}));
     ScriptEvent line = events[0];
     line.frame = 7;
     EXPECT_EQ(to_line(line), "frame 7 camera resume");
@@ -394,10 +360,7 @@ TEST_F(Hosted, AfterAPauseADevicesTimeGoesOnWhereItWas) {
 }
 
 TEST_F(Hosted, ADropThatFindsNoSurfaceIsSaidToWaitOnce) {
-  ScriptEvent drop;
-  drop.action = Action::kDrop;
-  drop.name = "pot";
-  apply(session_, drop);
+  apply(session_, {DropObject{.name = "pot"}});
   frame_.T_world_camera.reset();  // the pose is unknown
   result_ = session_.step(frame_, times_);
   host_.show(0, 0.0, frame_, result_);
@@ -410,17 +373,15 @@ TEST_F(Hosted, ADropThatFindsNoSurfaceIsSaidToWaitOnce) {
 /// reported.
 class AskedMeanwhile : public NoFrames {
  public:
-  AskedMeanwhile(UiChannel& link, const std::string& mesh, std::string& said) : link_(link), said_(said) {
-    command_.kind = UserCommandKind::kNew;
-    command_.event.mesh = mesh;
-  }
+  AskedMeanwhile(UiChannel& link, const std::string& mesh, std::string& said)
+      : link_(link), said_(said), command_(AddNew{{.mesh = mesh}}) {}
   ReadResult next(Frame& frame) override {
     said_ += link_.take_message();
     if (said_.find("cannot be copied") != std::string::npos) frames_left_ = std::min(frames_left_, 5);
     if (--frames_left_ == 0) return {};
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
     link_.ask(command_);
-    command_.kind = UserCommandKind::kTurn;
+    command_ = TurnGrabbed{};
     frame.depth_camera = kCamera;
     frame.depth_m.resize(kCamera.width_px, kCamera.height_px, 0.0F);
     frame.stamp_s += 0.01;
@@ -481,39 +442,33 @@ TEST(UiChannel, CtrlCEndsAPausedSession) {
 
 TEST(UiChannel, OfManyDragsOnlyTheNewestCountsAndTheOrderOfTheRestStays) {
   UiChannel link;
-  UserCommand command;
-  for (const UserCommandKind kind : {UserCommandKind::kGrab, UserCommandKind::kDrag, UserCommandKind::kDrag,
-                                     UserCommandKind::kDrag, UserCommandKind::kLetGo}) {
-    command.kind = kind;
-    command.pixel.x() += 1.0;
-    link.ask(command);
-  }
+  link.ask(GrabObject{});
+  for (const double x : {2.0, 3.0, 4.0}) link.ask(DragGrabbed{.pixel = {x, 0.0}});
+  link.ask(LetGo{});
   const std::vector<UserCommand> commands = link.take_commands();
   ASSERT_EQ(commands.size(), 3U);
-  EXPECT_EQ(commands[1].kind, UserCommandKind::kDrag);
-  EXPECT_EQ(commands[1].pixel.x(), 4.0);
-  EXPECT_EQ(commands[2].kind, UserCommandKind::kLetGo);
+  EXPECT_EQ(std::get<DragGrabbed>(commands[1]).pixel.x(), 4.0);
+  EXPECT_TRUE(std::holds_alternative<LetGo>(commands[2]));
   EXPECT_TRUE(link.take_commands().empty());
 }
 
 TEST(UiChannel, TurnsBetweenTwoFramesAddUpAsFarAsAScriptCanSayThem) {
   UiChannel link;
-  UserCommand turn;
-  turn.kind = UserCommandKind::kTurn;
-  turn.event.turn_world_deg = {0.5, 0.0, -1.0};
+  const TurnGrabbed turn{{0.5, 0.0, -1.0}};
+  const auto turn_world_deg = [](const UserCommand& command) {
+    return std::get<TurnGrabbed>(command).turn_world_deg;
+  };
   for (int i = 0; i < 1000; ++i) link.ask(turn);
   std::vector<UserCommand> commands = link.take_commands();
   ASSERT_EQ(commands.size(), 1U);
-  EXPECT_TRUE(commands[0].event.turn_world_deg.isApprox(Vec3(500.0, 0.0, -1000.0)));
+  EXPECT_TRUE(turn_world_deg(commands[0]).isApprox(Vec3(500.0, 0.0, -1000.0)));
   for (int i = 0; i < 5000; ++i) link.ask(turn);
   commands = link.take_commands();
   ASSERT_EQ(commands.size(), 2U);
-  EXPECT_EQ(commands[0].event.turn_world_deg.z(), -3600.0);
-  EXPECT_EQ(commands[1].event.turn_world_deg.z(), -1400.0);
+  EXPECT_EQ(turn_world_deg(commands[0]).z(), -3600.0);
+  EXPECT_EQ(turn_world_deg(commands[1]).z(), -1400.0);
   link.ask(turn);
-  UserCommand choose;
-  choose.kind = UserCommandKind::kChoose;
-  link.ask(choose);
+  link.ask(ChooseObject{});
   link.ask(turn);
   EXPECT_EQ(link.take_commands().size(), 3U) << "of two objects, maybe";
 }

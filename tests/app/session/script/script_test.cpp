@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <variant>
 
 #include "mapping/types/system/error.hpp"
 
@@ -21,6 +22,16 @@ std::string message_of(const std::string& text) {
     return error.what();
   }
   return "";
+}
+
+/// Returns the event's action, which is of this kind.
+template <typename Kind>
+const Kind& as(const ScriptEvent& event) {
+  return std::get<Kind>(event.action);
+}
+template <typename Kind>
+Kind& as(ScriptEvent& event) {
+  return std::get<Kind>(event.action);
 }
 
 constexpr const char* kWhole = R"(# the whole language
@@ -49,11 +60,11 @@ TEST(Script, AnObjectMayBeAddedWithASizeAndAnAxisThatPointsUp) {
        {"frame 0 add chair chair.obj size 0.9 up -y", "frame 0 add chair chair.obj up -y size 0.9"}) {
     const Script script = parse_script(std::string(line) + "\n", "test");
     ASSERT_EQ(script.events.size(), 1U);
-    EXPECT_EQ(script.events[0].size_m, 0.9);
-    EXPECT_EQ(script.events[0].up, UpAxis::kMinusY);
+    EXPECT_EQ(as<AddObject>(script.events[0]).source.size_m, 0.9);
+    EXPECT_EQ(as<AddObject>(script.events[0]).source.up, UpAxis::kMinusY);
     EXPECT_EQ(to_line(script.events[0]), "frame 0 add chair chair.obj size 0.9 up -y");
   }
-  EXPECT_FALSE(parse_script("frame 0 add chair chair.obj\n", "test").events[0].up);
+  EXPECT_FALSE(as<AddObject>(parse_script("frame 0 add chair chair.obj\n", "test").events[0]).source.up);
   for (const char* bad : {"up sideways", "up", "size 0.9 size 0.8", "up y up z", "upright"})
     EXPECT_THROW(parse_script(std::string("frame 0 add chair chair.obj ") + bad + "\n", "test"), Error)
         << bad;
@@ -62,7 +73,7 @@ TEST(Script, AnObjectMayBeAddedWithASizeAndAnAxisThatPointsUp) {
 TEST(Script, ReadsTheNameThatCommitHadBefore) {
   const Script script = parse_script("time 8 adopt", "events.txt");
   ASSERT_EQ(script.events.size(), 1U);
-  EXPECT_EQ(script.events[0].action, Action::kCommit);
+  EXPECT_EQ(script.events[0].action, Action(CommitChanges{}));
   EXPECT_EQ(to_line(script.events[0]), "time 8 commit");
 }
 
@@ -70,45 +81,34 @@ TEST(Script, ReadsEachAction) {
   const Script script = parse_script(kWhole, "events.txt");
   ASSERT_EQ(script.events.size(), 17U);
   const auto& add = script.events[0];
-  EXPECT_EQ(add.action, Action::kAdd);
+  EXPECT_EQ(add.action, Action(AddObject{.name = "pot", .source = {.mesh = "teapot", .size_m = 0.2}}));
   EXPECT_EQ(add.line, 2);
   EXPECT_EQ(add.frame, 0);
   EXPECT_FALSE(add.time_s);
-  EXPECT_EQ(add.name, "pot");
-  EXPECT_EQ(add.mesh, "teapot");
-  EXPECT_EQ(add.size_m, 0.2);
-  EXPECT_EQ(script.events[1].action, Action::kDrop);
-  EXPECT_FALSE(script.events[1].position_world);
-  EXPECT_EQ(script.events[1].height_m, 0.4);
+  EXPECT_EQ(script.events[1].action, Action(DropObject{.name = "pot", .height_m = 0.4}));
   EXPECT_EQ(script.events[2].time_s, 2.5);
-  EXPECT_EQ(script.events[2].position_world, Eigen::Vector3d(0.4, -0.1, 0.75));
-  EXPECT_EQ(script.events[2].height_m, 0.3);
-  EXPECT_EQ(script.events[3].action, Action::kPlace);
-  EXPECT_EQ(script.events[4].action, Action::kThrow);
-  EXPECT_EQ(script.events[4].velocity_world_mps, Eigen::Vector3d(1, 0, 0.5));
-  EXPECT_EQ(script.events[5].action, Action::kRemove);
-  EXPECT_EQ(script.events[6].action, Action::kCommit);
-  EXPECT_TRUE(script.events[6].name.empty());
-  EXPECT_EQ(script.events[7].action, Action::kTurn);
-  EXPECT_EQ(script.events[7].turn_world_deg, Eigen::Vector3d(0, 0, -45.5));
-  EXPECT_EQ(script.events[8].action, Action::kCarry);
-  EXPECT_EQ(script.events[8].position_world, Eigen::Vector3d(0.4, -0.1, 1));
-  EXPECT_EQ(script.events[9].action, Action::kRelease);
-  EXPECT_EQ(script.events[9].velocity_world_mps, Eigen::Vector3d(0.1, 0, 0));
-  EXPECT_EQ(script.events[10].surfaces, SurfacePolicy::kBorder);
-  EXPECT_TRUE(script.events[11].unknown_is_solid);
-  EXPECT_EQ(script.events[12].radar.mode, RadarMode::kSampled);
-  EXPECT_EQ(script.events[12].radar.resolution_px, 48);
-  EXPECT_EQ(script.events[13].action, Action::kCamera);
-  EXPECT_EQ(script.events[13].camera, CameraPlay::kHold);
   EXPECT_EQ(
-      script.events[14].quality,
-      (RunQuality{
-          .depth_stride = 2, .mesh_tolerance_sigmas = 0.1, .radar = RadarMode::kSampled, .shadows = false}));
-  EXPECT_EQ(script.events[14].from, FramePart::kLocate);
-  EXPECT_EQ(script.events[15].quality, (RunQuality{.move_every_n_frames = 4}));
-  EXPECT_EQ(script.events[15].from, FramePart::kPhysics);
-  EXPECT_EQ(script.events[16].action, Action::kQuit);
+      script.events[2].action,
+      Action(DropObject{.name = "pot", .position_world = Eigen::Vector3d(0.4, -0.1, 0.75), .height_m = 0.3}));
+  EXPECT_EQ(script.events[3].action, Action(PlaceObject{"pot", {0.4, -0.1, 0.9}}));
+  EXPECT_EQ(script.events[4].action, Action(ThrowObject{"pot", {0.4, -0.1, 1.2}, {1, 0, 0.5}}));
+  EXPECT_EQ(script.events[5].action, Action(RemoveObject{"pot"}));
+  EXPECT_EQ(script.events[6].action, Action(CommitChanges{}));
+  EXPECT_EQ(script.events[7].action, Action(TurnObject{"pot", {0, 0, -45.5}}));
+  EXPECT_EQ(script.events[8].action, Action(CarryObject{"pot", {0.4, -0.1, 1}}));
+  EXPECT_EQ(script.events[9].action, Action(ReleaseObject{"pot", {0.1, 0, 0}}));
+  EXPECT_EQ(script.events[10].action, Action(SetSurfaces{SurfacePolicy::kBorder}));
+  EXPECT_EQ(script.events[11].action, Action(SetUnknown{.is_solid = true}));
+  EXPECT_EQ(as<SetRadar>(script.events[12]).radar.mode, RadarMode::kSampled);
+  EXPECT_EQ(as<SetRadar>(script.events[12]).radar.resolution_px, 48);
+  EXPECT_EQ(script.events[13].action, Action(PlayCamera{CameraPlay::kHold}));
+  EXPECT_EQ(
+      script.events[14].action,
+      Action(SetQuality{
+          {.depth_stride = 2, .mesh_tolerance_sigmas = 0.1, .radar = RadarMode::kSampled, .shadows = false},
+          FramePart::kLocate}));
+  EXPECT_EQ(script.events[15].action, Action(SetQuality{{.move_every_n_frames = 4}, FramePart::kPhysics}));
+  EXPECT_EQ(script.events[16].action, Action(Quit{}));
   EXPECT_EQ(script.events[14].line, 17);
 }
 
@@ -118,14 +118,12 @@ TEST(Script, AnObjectHasAMaterialFromTheBeginningOrLater) {
       "frame 9 material pot mass 2\n",
       "test");
   ASSERT_EQ(script.events.size(), 2U);
-  EXPECT_EQ(script.events[0].size_m, 0.2);
-  EXPECT_EQ(script.events[0].material,
+  EXPECT_EQ(as<AddObject>(script.events[0]).source.size_m, 0.2);
+  EXPECT_EQ(as<AddObject>(script.events[0]).material,
             (BodyMaterial{.density_kg_m3 = 2700.0, .friction = 0.3, .restitution = 1.0}));
   EXPECT_EQ(to_line(script.events[0]),
             "frame 0 add pot teapot size 0.2 density 2700 friction 0.3 restitution 1");
-  EXPECT_EQ(script.events[1].action, Action::kMaterial);
-  EXPECT_EQ(script.events[1].name, "pot");
-  EXPECT_EQ(script.events[1].material, BodyMaterial{.mass_kg = 2.0});
+  EXPECT_EQ(script.events[1].action, Action(ChangeMaterial{"pot", {.mass_kg = 2.0}}));
   EXPECT_EQ(to_line(script.events[1]), "frame 9 material pot mass 2");
 }
 
@@ -136,17 +134,12 @@ TEST(Script, EveryEventIsWrittenAsALineThatReadsBackToTheLastBit) {
                        "frame 302 drop pot view height 0.1 turned 1 2 3\n",
                    "events.txt");
   // Numbers without a short decimal representation.
-  script.events[3].position_world = Eigen::Vector3d(1.0 / 3.0, -1e-17, 0.1 + 0.2);
-  script.events[4].velocity_world_mps = Eigen::Vector3d(std::sqrt(2.0), -0.0, 1e-9);
+  as<PlaceObject>(script.events[3]).position_world = Eigen::Vector3d(1.0 / 3.0, -1e-17, 0.1 + 0.2);
+  as<ThrowObject>(script.events[4]).velocity_world_mps = Eigen::Vector3d(std::sqrt(2.0), -0.0, 1e-9);
   script.events[2].time_s = 1.0 / 30.0;
   for (const CameraPlay camera :
-       {CameraPlay::kHold, CameraPlay::kGo, CameraPlay::kRewind, CameraPlay::kLoop, CameraPlay::kStay}) {
-    ScriptEvent event;
-    event.frame = 7;
-    event.action = Action::kCamera;
-    event.camera = camera;
-    script.events.push_back(event);
-  }
+       {CameraPlay::kHold, CameraPlay::kGo, CameraPlay::kRewind, CameraPlay::kLoop, CameraPlay::kStay})
+    script.events.push_back({.action = PlayCamera{camera}, .frame = 7});
   std::string text;
   for (const ScriptEvent& event : script.events) text += to_line(event) + "\n";
   const Script again = parse_script(text, "again.txt");
@@ -156,23 +149,7 @@ TEST(Script, EveryEventIsWrittenAsALineThatReadsBackToTheLastBit) {
     const ScriptEvent& b = again.events[i];
     EXPECT_EQ(a.frame, b.frame) << text;
     EXPECT_EQ(a.time_s, b.time_s);
-    EXPECT_EQ(a.action, b.action);
-    EXPECT_EQ(a.name, b.name);
-    EXPECT_EQ(a.mesh, b.mesh);
-    EXPECT_EQ(a.size_m, b.size_m);
-    EXPECT_EQ(a.position_world, b.position_world);
-    EXPECT_EQ(a.height_m, b.height_m);
-    EXPECT_EQ(a.velocity_world_mps, b.velocity_world_mps);
-    EXPECT_EQ(a.turn_world_deg, b.turn_world_deg);
-    EXPECT_EQ(a.angular_velocity_world_rad_s, b.angular_velocity_world_rad_s);
-    EXPECT_EQ(a.R_world_object, b.R_world_object);
-    EXPECT_EQ(a.surfaces, b.surfaces);
-    EXPECT_EQ(a.unknown_is_solid, b.unknown_is_solid);
-    EXPECT_EQ(a.radar.mode, b.radar.mode);
-    EXPECT_EQ(a.radar.resolution_px, b.radar.resolution_px);
-    EXPECT_EQ(a.quality, b.quality);
-    EXPECT_EQ(a.from, b.from);
-    EXPECT_EQ(a.camera, b.camera);
+    EXPECT_EQ(a.action, b.action) << to_line(a);
   }
 }
 
@@ -282,9 +259,9 @@ TEST_F(ScriptFile, MeshFilesAreRelativeToTheScript) {
   std::ofstream(folder_ / "e.txt")
       << "frame 0 add a bunny.obj\nframe 0 add b /abs/c.ply\nframe 0 add c teapot\n";
   const Script script = read_script(folder_ / "e.txt");
-  EXPECT_EQ(script.events[0].mesh, (folder_ / "bunny.obj").string());
-  EXPECT_EQ(script.events[1].mesh, "/abs/c.ply");
-  EXPECT_EQ(script.events[2].mesh, "teapot");
+  EXPECT_EQ(as<AddObject>(script.events[0]).source.mesh, (folder_ / "bunny.obj").string());
+  EXPECT_EQ(as<AddObject>(script.events[1]).source.mesh, "/abs/c.ply");
+  EXPECT_EQ(as<AddObject>(script.events[2]).source.mesh, "teapot");
 }
 
 TEST_F(ScriptFile, ALastLineThatWasCutIsLeftOutWhereThatIsSaid) {
