@@ -83,7 +83,7 @@ nlohmann::json find_all(const std::string& name, FrameSource& source, SearchedRo
   std::vector<double> errors_mm;
   int asked = 0, found = 0, right = 0;
   Locator fresh;
-  fresh.index.patches = build_patch_index(mapped.map.keyframe_database);
+  fresh.index.patches = build_patch_index(mapped.map.keyframe_database.load());
   nlohmann::json failed = nlohmann::json::array();
   for (ReadResult read; (read = source.next(frame)).status != ReadStatus::kEnd;) {
     ++asked;
@@ -118,7 +118,7 @@ nlohmann::json find_all(const std::string& name, FrameSource& source, SearchedRo
   }
   std::sort(errors_mm.begin(), errors_mm.end());
   return {{"row", name},
-          {"keyframes", mapped.map.keyframe_database->keyframes.size()},
+          {"keyframes", mapped.map.keyframe_database.load().keyframes.size()},
           {"asked", asked},
           {"found", found},
           {"right", right},
