@@ -26,9 +26,11 @@ void visit_parts(const FallthroughOptions& options, const Visit& visit) {
 }  // namespace
 
 std::string scenario_manifest(const FallthroughOptions& options) {
-  const std::string common = ": fallthrough --seed " + std::to_string(options.seed) + " --random-rooms " +
-                             std::to_string(options.random_rooms) + " --radar " +
-                             std::string(to_string(options.radar));
+  const std::string common =
+      ": fallthrough --seed " + std::to_string(options.seed) + " --random-rooms " +
+      std::to_string(options.random_rooms) +
+      (options.radar == RadarMode::kExact ? std::string()
+                                          : " --radar " + std::string(to_string(options.radar)));
   std::string manifest = "# Scenarios of roomradar fallthrough, as jobs of roomradar farm.\n";
   manifest += kRooms + common + " --part 0:0 --maps {}/maps --rows {}/rows.json\n";
   visit_parts(options, [&](const std::string& name, std::int64_t first, std::int64_t last) {
