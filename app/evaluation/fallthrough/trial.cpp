@@ -63,7 +63,7 @@ Trial run_trial(PreparedScenario& prepared, FrameScene& scene, const TrialSurfac
                 const WatchTrial& watch) {
   using Clock = std::chrono::steady_clock;
   constexpr double kAbout_m = 0.02;  // as in Session
-  constexpr double kArrived_m = 0.001, kBlocked_m = 1e-6;
+  constexpr double kArrived_m = 0.001;
   const Scenario& scenario = prepared.scenario;
   const bool is_still = scenario.occluder_velocity_world.isZero();
   Trial trial;
@@ -87,12 +87,15 @@ Trial run_trial(PreparedScenario& prepared, FrameScene& scene, const TrialSurfac
     const Contact contact =
         radar.query({{&prepared.object, T_world_object}, scenario.direction_world, next_m}, {surfaces, {}});
     query_ms += ms_since(start);
-    // Objects move by the lower bound, and stop where the bounds agree or nothing is certainly free.
+    // Objects move by the lower bound, and stop where the bounds agree. Beyond CyberRadar::kMostWorkBehind
+    // the lower bound is 0, and the radar's estimate counts.
     const double free_m =
         contact.status == ContactStatus::kOverlap ? 0.0 : std::clamp(contact.lower_m, 0.0, next_m);
-    stopped =
-        (contact && (contact.upper_m - free_m < kArrived_m || free_m < kArrived_m)) || free_m < kBlocked_m;
-    trial.travelled_m += free_m;
+    const bool do_bounds_agree = contact.upper_m - free_m < kArrived_m;
+    const bool is_undecided = !(free_m > 0.0) && !do_bounds_agree;
+    stopped = contact && (do_bounds_agree || is_undecided);
+    const double estimate_m = contact ? std::max(0.0, contact.contact_distance_m) : next_m;
+    trial.travelled_m += is_undecided ? estimate_m : free_m;
     if (stopped) trial.rested_on = contact.touched;
     const bool is_last = stopped || trial.travelled_m >= scenario.limit_m;
     if (watch) watch({frame_number, surfaces, from_m, trial.travelled_m, is_last});
