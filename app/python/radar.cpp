@@ -87,13 +87,11 @@ class PythonRadar {
 std::unique_ptr<PythonRadar> make_radar(const std::string& mode, int resolution_px) {
   RadarConfig config;
   config.resolution_px = resolution_px;
-  if (mode == to_string(RadarMode::kSampled))
-    config.mode = RadarMode::kSampled;
-  else if (mode == to_string(RadarMode::kPasses))
-    config.mode = RadarMode::kPasses;
-  else if (mode != to_string(RadarMode::kExact))
+  const std::optional<RadarMode> known = radar_mode_of(mode);
+  if (!known)
     throw py::value_error("mode: is \"" + required_text(mode, "mode") +
                           "\"; must be exact, sampled or passes");
+  config.mode = *known;
   require_valid(config);
   return without_gil([&] { return std::make_unique<PythonRadar>(config); });
 }

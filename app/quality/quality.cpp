@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <system_error>
 
 #include "mapping/types/system/classic_locale.hpp"
@@ -12,12 +13,12 @@
 #include "mapping/types/system/format_number.hpp"
 
 namespace roomradar {
-namespace {
-
 std::string word_of(double value) { return format_number(value); }
 std::string word_of(int value) { return format_number(value); }
 std::string word_of(bool value) { return value ? "on" : "off"; }
 std::string word_of(RadarMode value) { return std::string(to_string(value)); }
+
+namespace {
 
 template <typename Number>
 bool read(std::string_view word, Number& value) {
@@ -29,10 +30,9 @@ bool read(std::string_view word, bool& value) {
   return value || word == "off";
 }
 bool read(std::string_view word, RadarMode& value) {
-  value = word == to_string(RadarMode::kSampled)  ? RadarMode::kSampled
-          : word == to_string(RadarMode::kPasses) ? RadarMode::kPasses
-                                                  : RadarMode::kExact;
-  return word == to_string(value);
+  const std::optional<RadarMode> mode = radar_mode_of(word);
+  value = mode.value_or(value);
+  return mode.has_value();
 }
 
 bool is_within(const QualityField& field, double value) { return value >= field.low && value <= field.high; }

@@ -50,6 +50,12 @@ struct QualityField {
   const char* old_option = "";   ///< former name on the command line; empty: none
 };
 
+/// Return the word of a field's value, from which set_field() restores it exactly.
+std::string word_of(double value);
+std::string word_of(int value);
+std::string word_of(bool value);
+std::string word_of(RadarMode value);
+
 /// Returns the words of a type such as "a|b|c" for a sentence: "a, b or c". Other text is unchanged.
 std::string words_of_choice(std::string_view type);
 

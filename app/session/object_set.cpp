@@ -13,7 +13,7 @@
 namespace roomradar {
 ObjectSet::ObjectSet(GlContext& context, const FrameScene& scene, const SessionRoom& room,
                      const SessionConfig& config)
-    : context_(context), scene_(scene), room_(room), config_(config), radar_(config.radar) {
+    : context_(context), scene_(scene), room_(room), config_(config) {
   set_radar(config.radar);
 }
 

@@ -267,9 +267,12 @@ bool PlayUi::press_scene_key(int key) {
       link_.ask(unknown_command(shown_.unknown_is_solid));
       return true;
     case GLFW_KEY_X:
-      shown_.radar.mode = shown_.radar.mode == RadarMode::kExact     ? RadarMode::kSampled
-                          : shown_.radar.mode == RadarMode::kSampled ? RadarMode::kPasses
-                                                                     : RadarMode::kExact;
+      shown_.radar.mode =
+          kRadarModes[(static_cast<std::size_t>(
+                           std::find(kRadarModes.begin(), kRadarModes.end(), shown_.radar.mode) -
+                           kRadarModes.begin()) +
+                       1) %
+                      kRadarModes.size()];
       link_.ask(radar_command(shown_.radar));
       return true;
     default:

@@ -30,7 +30,7 @@ Contact nearer_of(const Contact& a, const Contact& b) {
 }  // namespace
 
 PassesRadar::PassesRadar(GlContext& context, int resolution_px)
-    : context_(context), passes_(context, {.resolution_px = resolution_px}) {}
+    : context_(context), passes_(context, {.resolution_px = resolution_px, .exact_fallback = false}) {}
 
 /// Returns the tree's mesh in OpenGL buffers. Replaces a mesh that the last queries have not used, if there
 /// is one.

@@ -44,7 +44,7 @@ void ObjectFront::build(const TurnedTree& object, const SceneInFrame& scene, con
   constexpr int kFinest_px = 384;  // unless config.resolution_px is finer
   const std::array kept_px{96, 192, kFinest_px, std::max(kFinest_px, config.resolution_px)};
   constexpr std::size_t kFewTriangles = 500;  // fewer make a cheap M
-  const bool is_exact = config.mode == RadarMode::kExact;
+  const bool is_exact = config.mode != RadarMode::kSampled;
   const auto at_most_asked = [&](int px) {
     return is_exact ? std::min(px, kFinest_px) : std::min(px, config.resolution_px);
   };

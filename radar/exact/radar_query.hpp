@@ -1,7 +1,9 @@
 // radar_query.hpp: a query of CyberRadar, and its settings.
 #pragma once
 #include <Eigen/Geometry>
+#include <array>
 #include <cstddef>
+#include <optional>
 #include <string_view>
 
 #include "radar/geometry/radar_scene.hpp"
@@ -20,6 +22,15 @@ enum class RadarMode {
 };
 constexpr std::string_view to_string(RadarMode mode) {
   return mode == RadarMode::kSampled ? "sampled" : mode == RadarMode::kPasses ? "passes" : "exact";
+}
+
+/// All modes, in the order of menus.
+inline constexpr std::array kRadarModes = {RadarMode::kExact, RadarMode::kSampled, RadarMode::kPasses};
+/// Returns the mode of a word of to_string(); nullopt for other words.
+constexpr std::optional<RadarMode> radar_mode_of(std::string_view word) {
+  for (const RadarMode mode : kRadarModes)
+    if (word == to_string(mode)) return mode;
+  return std::nullopt;
 }
 
 struct RadarConfig {

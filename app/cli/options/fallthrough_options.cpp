@@ -2,6 +2,8 @@
 #include "app/cli/options/fallthrough_options.hpp"
 
 #include <CLI/CLI.hpp>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "app/cli/options/option_checks.hpp"
@@ -34,9 +36,10 @@ void add_recorded_room_options(CLI::App& command, FallthroughOptions& options) {
 }
 
 void add_radar_option(CLI::App& command, FallthroughOptions& options) {
+  std::map<std::string, RadarMode> words;
+  for (const RadarMode mode : kRadarModes) words.emplace(to_string(mode), mode);
   add_choice<RadarMode>(
-      command, "--radar", options.radar,
-      {{"exact", RadarMode::kExact}, {"sampled", RadarMode::kSampled}, {"passes", RadarMode::kPasses}},
+      command, "--radar", options.radar, words,
       "distance to contact: exact; between bounds about a pixel apart (sampled); or, between such\n"
       "bounds, from Cyber Radar's two rendered depth passes (passes) (default: exact)");
 }

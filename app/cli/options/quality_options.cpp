@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <type_traits>
 
 #include "app/cli/options/option_checks.hpp"
 #include "app/cli/options/renamed_options.hpp"
@@ -14,10 +15,14 @@
 namespace roomradar {
 namespace {
 
-std::string word_in_help(double value) { return format_readable(value, 3); }
-std::string word_in_help(int value) { return std::to_string(value); }
-std::string word_in_help(bool value) { return value ? "on" : "off"; }
-std::string word_in_help(RadarMode value) { return std::string(to_string(value)); }
+/// Returns the value's word, of numbers with a fraction three digits of it.
+template <typename Value>
+std::string word_in_help(const Value& value) {
+  if constexpr (std::is_same_v<Value, double>)
+    return format_readable(value, 3);
+  else
+    return word_of(value);
+}
 
 /// Returns the help text with "(default: WORD)" at its end, on a new line if the last one has no room for it.
 std::string with_default(const std::string& help, const std::string& word) {

@@ -25,8 +25,11 @@ constexpr std::array<Word<SurfacePolicy>, 4> kSurfaces = {{{"holes", SurfacePoli
                                                            {"border", SurfacePolicy::kBorder},
                                                            {"map", SurfacePolicy::kMap}}};
 constexpr std::array<Word<bool>, 2> kUnknown = {{{"free", false}, {"solid", true}}};
-constexpr std::array<Word<RadarMode>, 3> kRadarModes = {
-    {{"exact", RadarMode::kExact}, {"sampled", RadarMode::kSampled}, {"passes", RadarMode::kPasses}}};
+constexpr auto kRadarModeWords = [] {
+  std::array<Word<RadarMode>, kRadarModes.size()> words{};
+  for (std::size_t i = 0; i < words.size(); ++i) words[i] = {to_string(kRadarModes[i]), kRadarModes[i]};
+  return words;
+}();
 constexpr std::array<Word<FramePart>, 4> kFramePartWords = {{{"locate", FramePart::kLocate},
                                                              {"mesh", FramePart::kMesh},
                                                              {"physics", FramePart::kPhysics},
@@ -176,7 +179,7 @@ Action read_unknown(LineReader& line) {
 
 Action read_radar(LineReader& line) {
   SetRadar set;
-  set.radar.mode = line.choice("the radar's mode", kRadarModes);
+  set.radar.mode = line.choice("the radar's mode", kRadarModeWords);
   set.radar.resolution_px = static_cast<int>(line.whole_number("pixels, 1..4096", 1.0, 4096.0));
   return set;
 }
@@ -292,7 +295,7 @@ std::string action_words(const Action& action) {
           [](const SetSurfaces& set) { return "surfaces " + std::string(word_of(kSurfaces, set.surfaces)); },
           [](const SetUnknown& set) { return "unknown " + std::string(word_of(kUnknown, set.is_solid)); },
           [](const SetRadar& set) {
-            return "radar " + std::string(word_of(kRadarModes, set.radar.mode)) + " " +
+            return "radar " + std::string(to_string(set.radar.mode)) + " " +
                    std::to_string(set.radar.resolution_px);
           },
           [](const SetQuality& set) { return quality_words(set); },

@@ -247,14 +247,12 @@ RecordingFacts index_tum_rgbd(const fs::path& folder) {
   facts.depth_unit_m = depth_unit_m(DepthEncoding::kTum);
   facts.unit_source = "1/5000 m, by the TUM RGB-D format";
 
-  std::vector<double> stamps;
-  for (const ListedImage& image : *depth) stamps.push_back(image.stamp);
   facts.pose_track = std::make_shared<std::vector<StampedPose>>();
-  const ListedPoses listed = read_pose_list(folder / "groundtruth.txt", std::ssize(stamps), facts);
+  const ListedPoses listed = read_pose_list(folder / "groundtruth.txt", std::ssize(*depth), facts);
   for (std::size_t i = 0; i < listed.poses.size(); ++i)
     if (listed.poses[i].T_world_camera)
       facts.pose_track->push_back(
-          {listed.are_stamped ? listed.poses[i].stamp : stamps[i], *listed.poses[i].T_world_camera});
+          {listed.are_stamped ? listed.poses[i].stamp : (*depth)[i].stamp, *listed.poses[i].T_world_camera});
     else
       ++facts.lost_track_poses;
   facts.acceleration_track = std::make_shared<std::vector<StampedAcceleration>>();

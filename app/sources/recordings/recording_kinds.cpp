@@ -35,23 +35,18 @@ namespace fs = std::filesystem;
 struct Kind {
   const char* name;
   bool (*is_kind)(const fs::path&);
-  RecordingFacts (*read)(const fs::path&);
+  RecordingFacts (*read)(const fs::path&);  ///< null: read_topic is called
   bool is_foreign = true;
-  RecordingFacts (*read_topic)(const fs::path&,
-                               const std::string& depth_topic) = nullptr;  ///< of several topics
+  /// Reads a recording with several topics; an empty name leaves the choice to the reader.
+  RecordingFacts (*read_topic)(const fs::path&, const std::string& depth_topic) = nullptr;
 };
-
-template <RecordingFacts (*Read)(const fs::path&, const std::string&)>
-constexpr Kind kind_of_ros(const char* name, bool (*is_kind)(const fs::path&)) {
-  return {name, is_kind, [](const fs::path& path) { return Read(path, ""); }, true, Read};
-}
 
 /// In this order: a folder that looks like several kinds is of the first.
 constexpr std::array kKinds = {
     Kind{"Record3D export", is_record3d, index_record3d},
     Kind{"Azure Kinect recording", is_matroska, index_azure_recording},
-    kind_of_ros<index_ros1_bag>("ROS 1 bag", is_ros_bag),
-    kind_of_ros<index_ros2_bag>("ROS 2 bag", is_ros2_bag),
+    Kind{"ROS 1 bag", is_ros_bag, nullptr, true, index_ros1_bag},
+    Kind{"ROS 2 bag", is_ros2_bag, nullptr, true, index_ros2_bag},
     Kind{"OpenNI recording", is_oni, index_oni_recording},
     Kind{"RTAB-Map database", is_rtabmap, index_rtabmap},
     Kind{"ScanNet recording", is_scannet_sens, index_scannet_sens},
@@ -172,7 +167,7 @@ RecordingFacts read_facts(const fs::path& path, const std::string& depth_topic) 
     if (!kind) fail_unknown(path);
     if (!depth_topic.empty() && !kind->read_topic)
       throw Error(path.string() + ": is a " + kind->name + ", which has no topics; leave out --depth-topic");
-    RecordingFacts facts = depth_topic.empty() ? kind->read(file) : kind->read_topic(file, depth_topic);
+    RecordingFacts facts = kind->read_topic ? kind->read_topic(file, depth_topic) : kind->read(file);
     facts.kind = kind->name;
     if (file != path) facts.name = fs::canonical(path).string();
     if (file != path && fs::is_directory(file)) facts.entered = file.string();

@@ -112,12 +112,11 @@ void draw_policies(const Snapshot& shown, UiChannel& link, PlaySettings& setting
 
   look::heading("RADAR", fonts);
   constexpr std::array<const char*, 3> kModes = {"exact", "sampled", "passes"};
-  constexpr std::array<RadarMode, 3> kOfModes = {RadarMode::kExact, RadarMode::kSampled, RadarMode::kPasses};
   RadarConfig radar = shown.radar;
-  const auto lit_mode = std::find(kOfModes.begin(), kOfModes.end(), radar.mode) - kOfModes.begin();
+  const auto lit_mode = std::find(kRadarModes.begin(), kRadarModes.end(), radar.mode) - kRadarModes.begin();
   const int mode = look::segments("mode", kModes.data(), 3, static_cast<int>(lit_mode));
   if (mode >= 0) {
-    radar.mode = kOfModes[static_cast<std::size_t>(mode)];
+    radar.mode = kRadarModes[static_cast<std::size_t>(mode)];
     link.ask(radar_command(radar));
   }
   if (!ImGui::IsAnyItemActive()) settings.radar_px = radar.resolution_px;
