@@ -117,6 +117,7 @@ bool is_numbered_images(const fs::path& folder) { return !depth_folder(folder).e
 
 RecordingFacts index_numbered_images(const fs::path& folder) {
   RecordingFacts facts{.name = fs::canonical(folder).string(), .has_no_clock = true};
+  facts.is_written_by_many = true;
   const fs::path depth_images = depth_folder(folder), colour_images = colour_folder(folder);
   const auto colour_files = numbered_files(colour_images, {".jpg", ".jpeg", ".png"});
   const auto pose_files = numbered_files(folder_named(folder, {"pose", "poses"}), {".txt"});

@@ -2,6 +2,8 @@
 #include "app/sources/datasets/record3d.hpp"
 
 #include <cmath>
+#include <cstdint>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -13,6 +15,7 @@
 #include "app/sources/formats/camera_rig_json.hpp"
 #include "app/sources/formats/image_file.hpp"
 #include "app/sources/formats/nominal_rig.hpp"
+#include "app/sources/formats/parse_numbers.hpp"
 #include "app/sources/formats/time_tracks.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
@@ -25,6 +28,11 @@ using Json = nlohmann::json;
 
 constexpr std::uintmax_t kMaxMetadata_bytes = 1U << 28U;  // two hours at 60 Hz
 constexpr std::uintmax_t kMaxExr_bytes = 1U << 28U;
+
+/// Returns the depth images: .exr, as the app writes them, or .png of converted exports.
+std::map<std::int64_t, fs::path> depth_images_of(const fs::path& folder) {
+  return numbered_files(folder / "depth", {".exr", ".png"});
+}
 
 int size_px(const Json& metadata, const char* name, const std::string& where) {
   const double value = json_number(metadata, name, where);
@@ -42,6 +50,14 @@ std::optional<std::vector<double>> listed_numbers(const Json& array, std::size_t
     values.push_back(each.get<double>());
   }
   return values;
+}
+
+/// Replaces strings that are numbers, as some scripts write them, by these numbers.
+void read_quoted_numbers(Json& value) {
+  if (value.is_structured())
+    for (Json& each : value) read_quoted_numbers(each);
+  else if (value.is_string())
+    if (const auto number = parse_number(value.get_ref<const std::string&>())) value = *number;
 }
 
 Intrinsics colour_camera_of(const Json& metadata, const std::string& where) {
@@ -77,7 +93,7 @@ bool is_record3d(const fs::path& folder) {
   if (is_unexported(folder)) return true;
   const fs::path metadata = metadata_file(folder);
   return !metadata.empty() && fs::is_directory(folder / "depth", ignored) &&
-         (metadata.extension().empty() || !numbered_files(folder / "depth", {".exr"}).empty());
+         (metadata.extension().empty() || !depth_images_of(folder).empty());
 }
 
 RecordingFacts index_record3d(const fs::path& folder) {
@@ -88,11 +104,11 @@ RecordingFacts index_record3d(const fs::path& folder) {
         folder.string() +
         ": is in Record3D's own form (.r3d, rgbd/N.depth), which is not read; export the recording in the "
         "app as \"EXR + RGB\"");
-  const Json metadata =
-      Json::parse(read_bytes(metadata_path, "Record3D's metadata", kMaxMetadata_bytes), nullptr,
-                  /*allow_exceptions=*/false);
+  Json metadata = Json::parse(read_bytes(metadata_path, "Record3D's metadata", kMaxMetadata_bytes), nullptr,
+                              /*allow_exceptions=*/false);
   if (metadata.is_discarded() || !metadata.is_object())
     throw Error(where + ": is not JSON; is it cut short?");
+  read_quoted_numbers(metadata);
 
   RecordingFacts facts{.name = fs::canonical(folder).string()};
   const Intrinsics colour = colour_camera_of(metadata, where);
@@ -102,8 +118,12 @@ RecordingFacts index_record3d(const fs::path& folder) {
   facts.rig.depth_camera = scaled_to_depth(colour, {depth_width, depth_height}, where);
   facts.camera_source = "K in " + metadata_path.filename().string();
   facts.is_depth_registered = true;
-  facts.depth_unit_m = 1.0;
-  facts.unit_source = "metres, by Record3D's format";
+  const auto depth_images = depth_images_of(folder);
+  const bool are_metres = depth_images.empty() || depth_images.begin()->second.extension() != ".png";
+  facts.depth_unit_m = are_metres ? 1.0 : 0.001;
+  facts.unit_source =
+      are_metres ? "metres, by Record3D's format" : "assumed: millimetres, as in most .png files";
+  if (!are_metres) facts.unit_origin = Origin::kAssumed;
   facts.has_quaternions = true;
   set_arkit_axes(facts, /*camera_is_opengl=*/true);
 
@@ -117,7 +137,7 @@ RecordingFacts index_record3d(const fs::path& folder) {
 
   const auto images = numbered_files(folder / "rgb", {".jpg", ".jpeg", ".png"});
   std::vector<fs::path> depth_paths, colour_paths;
-  for (const auto& [number, file] : numbered_files(folder / "depth", {".exr"})) {
+  for (const auto& [number, file] : depth_images) {
     const auto at = static_cast<std::size_t>(number);
     StatedFrame frame{.time = {.stamp_s = static_cast<double>(number) / fps}};
     if (!stamps.empty())
@@ -139,6 +159,8 @@ RecordingFacts index_record3d(const fs::path& folder) {
   }
   facts.read_depth = [depth_paths](std::size_t frame, double unit_m, DepthImage& depth_m) {
     const fs::path& file = depth_paths[frame];
+    if (file.extension() == ".png")
+      return read_depth_file(file, DepthEncoding::kMillimetres, unit_m, depth_m);
     decode_exr_depth(read_bytes(file, "an EXR image", kMaxExr_bytes), file.string(), depth_m);
     scale_depth(unit_m, depth_m);
   };

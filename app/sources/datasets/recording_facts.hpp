@@ -110,6 +110,8 @@ struct RecordingFacts {
   double depth_unit_m = 0.001;  ///< length of a unit of the stored depth
   Origin unit_origin = Origin::kFormat;
   std::string unit_source{};  ///< where the unit is stated
+  /// True: folders of this form are written by many programs, some of which store depth in another unit.
+  bool is_written_by_many = false;
 
   std::string gravity_source{};  ///< such as "accelerometer.txt"; empty: there is no gravity
   /// Lines, files and images that the reader left out, and choices between several streams.
@@ -117,6 +119,9 @@ struct RecordingFacts {
 
   /// Reads a depth image, m. `unit_m` is the length of a unit of the stored depth. Throws Error.
   std::function<void(std::size_t frame, double unit_m, DepthImage&)> read_depth{};
+  /// If set, called after read_depth: sets depths of which the recording states that they are unreliable to
+  /// 0. Throws Error if that cannot be read; the frame is then used with all its depths.
+  std::function<void(std::size_t frame, DepthImage&)> remove_unsure{};
   /// Reads a colour image. Throws Error.
   std::function<void(std::size_t colour, ColourImage&)> read_colour{};
   /// If set, called instead of reading StatedFrame::T_world_camera. `stamp_s` is the frame's time by

@@ -191,6 +191,7 @@ Open3dIntrinsics read_open3d_intrinsics(const fs::path& path) {
 RecordingFacts registered_images(const fs::path& folder, const fs::path& colour_images,
                                  DepthEncoding encoding, std::vector<std::int64_t>& numbers) {
   RecordingFacts facts{.name = fs::canonical(folder).string()};
+  facts.is_written_by_many = true;
   const auto colours = numbered_files(colour_images, {".jpg", ".jpeg", ".png"});
   std::vector<fs::path> depth_paths, colour_paths;
   for (const auto& [number, path] : numbered_files(depth_folder(folder), {".png"})) {

@@ -144,6 +144,7 @@ RecordingFacts index_seven_scenes(const fs::path& folder) {
   }
 
   RecordingFacts facts{.name = fs::canonical(folder).string(), .has_no_clock = true};
+  facts.is_written_by_many = true;
   const auto files = std::make_shared<std::vector<FrameFiles>>();
   std::vector<std::string> depths, colours;
   std::int64_t without_colour = 0, without_pose = 0, first_without_colour = -1, first_without_pose = -1;

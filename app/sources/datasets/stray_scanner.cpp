@@ -162,9 +162,11 @@ RecordingFacts index_stray_scanner(const fs::path& folder) {
   const Intrinsics colour = camera_matrix_of(folder / "camera_matrix.csv", video_size, depth_size);
   if (video) facts.rig.colour_camera = colour;
   facts.rig.depth_camera = scaled_to_depth(colour, depth_size, folder.string());
-  facts.read_depth = [paths, folder](std::size_t frame, double unit_m, DepthImage& depth_m) {
-    const fs::path confidence_path = folder / "confidence" / paths[frame].filename();
+  facts.read_depth = [paths](std::size_t frame, double unit_m, DepthImage& depth_m) {
     read_depth_file(paths[frame], DepthEncoding::kMillimetres, unit_m, depth_m);
+  };
+  facts.remove_unsure = [paths, folder](std::size_t frame, DepthImage& depth_m) {
+    const fs::path confidence_path = folder / "confidence" / paths[frame].filename();
     if (!fs::exists(confidence_path)) return;
     Image<std::uint8_t> confidence;
     const std::string name = confidence_path.string();

@@ -216,6 +216,7 @@ RecordingFacts index_tum_rgbd(const fs::path& folder) {
   if (!is_depth_listed && !has_stamped_depth(folder))
     throw Error((folder / "depth.txt").string() + ": is missing beside rgb.txt");
   RecordingFacts facts{.name = fs::canonical(folder).string(), .stamps_have_no_unit = true};
+  facts.is_written_by_many = true;
   const auto depth = std::make_shared<const std::vector<ListedImage>>(
       is_depth_listed ? read_image_list(folder, "depth.txt", facts) : images_named_by_stamps(folder / "depth"));
   const auto colours = std::make_shared<const std::vector<ListedImage>>(

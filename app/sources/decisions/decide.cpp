@@ -352,6 +352,13 @@ void read_depth(const DecidedRecording& recording, std::size_t frame, DepthImage
   if (depth_m.width != camera.width_px || depth_m.height != camera.height_px)
     throw Error("its depth image is " + size_text(depth_m.width, depth_m.height) +
                 ", but the recording's camera is " + size_text(camera.width_px, camera.height_px));
+  if (!recording.facts.remove_unsure) return;
+  try {
+    recording.facts.remove_unsure(decided.stated, depth_m);
+  } catch (const Error& fault) {
+    recording.report->count("images", "% confidence images cannot be read; all depth of their frames is used",
+                            static_cast<std::int64_t>(frame), fault.what());
+  }
 }
 
 }  // namespace roomradar

@@ -37,6 +37,7 @@ struct DepthEvidence {
   std::optional<double> far_pose_disagreement{};  ///< the same of pairs farther apart
   double pose_difference_m = 0.0;
   bool poses_disagree = false;
+  bool is_scale_confirmed = false;  ///< depth agrees with the poses much less if it is halved or doubled
   std::optional<double> still_difference{};  ///< the same, if the camera does not move
   bool is_camera_still = false;
 };

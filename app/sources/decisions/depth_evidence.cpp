@@ -24,11 +24,31 @@ constexpr std::array<std::size_t, 8> kApart = {1, 2, 4, 8, 16, 32, 64, 128};  //
 constexpr double kSurelyAgrees = 0.30, kAgrees = 0.72, kDisagrees = 0.75, kFarDisagrees = 0.80,
                  kDoubtful = 0.70, kClearlyBetter = 0.07;
 
-Intrinsics with_focal(const Intrinsics& camera, double factor) {
-  Intrinsics changed = camera;
-  changed.fx_px *= factor;
-  changed.fy_px *= factor;
-  return changed;
+/// An error of the stated depth camera, and of its pose relative to the recorded poses' camera.
+struct CameraError {
+  double fx_factor = 1.0, fy_factor = 1.0;  ///< times which the focal lengths are right
+  Eigen::Vector2d principal = {0.0,
+                               0.0};  ///< to be added to the principal point, as part of the image's width
+  Eigen::Vector3d turn_rad = {0.0, 0.0, 0.0};  ///< rotation vector, recorded camera -> camera
+  Eigen::Vector3d shift_m = {0.0, 0.0, 0.0};   ///< position of the camera in the recorded camera's frame
+};
+
+Intrinsics without_error(const Intrinsics& camera, const CameraError& error) {
+  Intrinsics right = camera;
+  right.fx_px *= error.fx_factor;
+  right.fy_px *= error.fy_factor;
+  right.cx_px += error.principal.x() * camera.width_px;
+  right.cy_px += error.principal.y() * camera.width_px;
+  return right;
+}
+
+/// Returns T_recordedcamera_camera.
+Eigen::Isometry3d pose_error(const CameraError& error) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translation() = error.shift_m;
+  if (const double angle_rad = error.turn_rad.norm(); angle_rad > 0.0)
+    T.linear() = Eigen::AngleAxisd(angle_rad, error.turn_rad / angle_rad).toRotationMatrix();
+  return T;
 }
 
 /// Differences of the points of one depth image to another.
@@ -315,12 +335,14 @@ std::vector<Pair> choose_shifted_pairs(std::size_t frames, const PoseOf& pose_of
 /// by depth_factor: that is the same as scaling the camera's motion the other way.
 template <typename Use>
 void for_each_posed_pair(const std::vector<Pair>& pairs, Samples& samples, const PoseOf& pose_of_position,
-                         double depth_factor, const Use& use) {
+                         double depth_factor, const CameraError& error, const Use& use) {
+  const Eigen::Isometry3d T_recorded_camera = pose_error(error);
   for (const Pair& pair : pairs) {
     const Sample *a = samples.at(pair.a), *b = samples.at(pair.b);
     const auto T_world_a = pose_of_position(pair.a), T_world_b = pose_of_position(pair.b);
     if (!a || !b || !T_world_a || !T_world_b) continue;
-    Eigen::Isometry3d T_b_a = T_world_b->inverse() * *T_world_a;
+    Eigen::Isometry3d T_b_a =
+        T_recorded_camera.inverse() * T_world_b->inverse() * *T_world_a * T_recorded_camera;
     T_b_a.translation() /= depth_factor;
     use(*a, *b, T_b_a);
   }
@@ -329,12 +351,12 @@ void for_each_posed_pair(const std::vector<Pair>& pairs, Samples& samples, const
 /// Mean difference over all pairs whose frames have poses.
 DepthDifference mean_difference(const std::vector<Pair>& pairs, Samples& samples,
                                 const PoseOf& pose_of_position, double depth_factor = 1.0,
-                                double focal_factor = 1.0) {
+                                const CameraError& error = {}) {
   DepthDifference mean{0.0, 0.0};
   std::vector<double> medians_m;
   std::size_t count = 0;
-  const Intrinsics camera = with_focal(samples.camera(), focal_factor);
-  for_each_posed_pair(pairs, samples, pose_of_position, depth_factor,
+  const Intrinsics camera = without_error(samples.camera(), error);
+  for_each_posed_pair(pairs, samples, pose_of_position, depth_factor, error,
                       [&](const Sample& a, const Sample& b, const Eigen::Isometry3d& T_b_a) {
                         const DepthDifference one = depth_difference(a.depth_m, b.depth_m, camera, T_b_a);
                         mean.disagreement += one.disagreement;
@@ -435,13 +457,14 @@ bool question_range(const DecidedRecording& recording, const DepthEvidence& evid
 /// Mean disagreement in brightness over all pairs whose frames have poses; nullopt: none has texture.
 std::optional<double> mean_brightness_disagreement(const std::vector<Pair>& pairs, Samples& samples,
                                                    const PoseOf& pose_of_position, double depth_factor,
-                                                   double focal_factor) {
+                                                   const CameraError& error) {
   double sum = 0.0;
   std::size_t count = 0;
-  const Intrinsics camera = with_focal(samples.camera(), focal_factor);
-  for_each_posed_pair(pairs, samples, pose_of_position, depth_factor,
+  const Intrinsics camera = without_error(samples.camera(), error);
+  for_each_posed_pair(pairs, samples, pose_of_position, depth_factor, error,
                       [&](const Sample& a, const Sample& b, const Eigen::Isometry3d& T_b_a) {
-                        if (const auto one = brightness_disagreement(a, b, camera, T_b_a)) sum += *one, ++count;
+                        if (const auto one = brightness_disagreement(a, b, camera, T_b_a))
+                          sum += *one, ++count;
                       });
   if (count * 2 < pairs.size()) return std::nullopt;
   return sum / static_cast<double>(count);
@@ -451,7 +474,7 @@ std::optional<double> mean_brightness_disagreement(const std::vector<Pair>& pair
 struct Hypothesis {
   PoseConvention convention{};
   double depth_factor = 1.0;     ///< times which depth is right
-  double focal_factor = 1.0;     ///< times which the focal length is right
+  CameraError camera{};
   double near = 1.0, far = 1.0;  ///< DepthDifference::disagreement over near and far pairs
   double brightness = 0.0;       ///< mean_brightness_disagreement() over far pairs; 0 if there is no texture
   double median_m = 0.0;         ///< DepthDifference::median_m over near pairs
@@ -479,8 +502,98 @@ std::vector<Hypothesis> hypotheses_of(const RecordingFacts& facts, const PoseCon
   for (const double factor : {0.05, 0.1, 0.2, 0.25, 0.33, 0.5, 0.7, 1.4, 2.0, 3.0, 4.0, 5.0, 10.0, 20.0})
     tried.push_back({.convention = now, .depth_factor = factor});
   for (const double factor : {0.6, 0.7, 0.77, 0.85, 1.15, 1.3, 1.4, 1.6})
-    tried.push_back({.convention = now, .focal_factor = factor});
+    tried.push_back({.convention = now, .camera = {.fx_factor = factor, .fy_factor = factor}});
   return tried;
+}
+
+/// A quantity that may be wrong by any amount, as a vector of up to three numbers.
+struct Fitted {
+  std::size_t numbers = 1;
+  double step = 0.0;   ///< first step of the search
+  double least = 0.0;  ///< amounts below are within what cameras and poses of working recordings differ by
+  void (*add)(Hypothesis&, const Eigen::Vector3d&) = nullptr;
+};
+
+/// Fitted one by one, so that none of them explains the fault of another one.
+constexpr std::array kFitted = {
+    // scale of depth, logarithm
+    Fitted{1, 0.07, 0.06,
+           [](Hypothesis& h, const Eigen::Vector3d& by) { h.depth_factor *= std::exp(by.x()); }},
+    // focal lengths, logarithms
+    Fitted{2, 0.15, 0.1,
+           [](Hypothesis& h, const Eigen::Vector3d& by) {
+             h.camera.fx_factor *= std::exp(by.x());
+             h.camera.fy_factor *= std::exp(by.y());
+           }},
+    // principal point, part of the image's width
+    Fitted{2, 0.06, 0.05,
+           [](Hypothesis& h, const Eigen::Vector3d& by) { h.camera.principal += by.head<2>(); }},
+    // axes of the camera, rad
+    Fitted{3, 0.05, 0.05, [](Hypothesis& h, const Eigen::Vector3d& by) { h.camera.turn_rad += by; }},
+    // position of the camera, m
+    Fitted{3, 0.05, 0.08, [](Hypothesis& h, const Eigen::Vector3d& by) { h.camera.shift_m += by; }},
+};
+
+/// Returns the hypothesis with one quantity changed as long as that lowers both(): steps along each number,
+/// which are halved when none lowers it. `measure` fills a hypothesis. Returns nullopt if the gain is small,
+/// or the change.
+std::optional<Hypothesis> fit(const Fitted& fitted, const Hypothesis& now,
+                              const std::function<void(Hypothesis&)>& measure) {
+  constexpr int kMostRounds = 8;
+  constexpr double kLeastGain = 0.06;
+  Hypothesis fit = now;
+  Eigen::Vector3d amount = Eigen::Vector3d::Zero();
+  double step = fitted.step;
+  for (int round = 0; round < kMostRounds && step > 0.2 * fitted.step; ++round) {
+    Hypothesis best = fit;
+    Eigen::Vector3d best_by = Eigen::Vector3d::Zero();
+    for (std::size_t k = 0; k < fitted.numbers; ++k)
+      for (const double sign : {-1.0, 1.0}) {
+        const Eigen::Vector3d by = sign * step * Eigen::Vector3d::Unit(static_cast<Eigen::Index>(k));
+        Hypothesis next = fit;
+        fitted.add(next, by);
+        measure(next);
+        if (next.both() < best.both()) best = next, best_by = by;
+      }
+    if (best_by.isZero())
+      step *= 0.5;
+    else
+      fit = best, amount += best_by;
+  }
+  if (fit.both() > now.both() - kLeastGain || amount.norm() < fitted.least) return std::nullopt;
+  return fit;
+}
+
+/// Returns the words "with a focal length of about ... than with ..."; nullopt if the camera is as stated.
+std::optional<std::string> other_camera(const Intrinsics& stated, const CameraError& error) {
+  const auto focal_text = [](double fx_px, double fy_px, int digits) {
+    const std::string x = format_readable(fx_px, digits), y = format_readable(fy_px, digits);
+    return x + (x == y ? "" : " x " + y) + " px";
+  };
+  const Intrinsics right = without_error(stated, error);
+  if (error.fx_factor != 1.0 || error.fy_factor != 1.0) {
+    const bool is_one = error.fx_factor == error.fy_factor;
+    return "with a focal length of about " + focal_text(right.fx_px, is_one ? right.fx_px : right.fy_px, 2) +
+           " than with " + focal_text(stated.fx_px, is_one ? stated.fx_px : stated.fy_px, 4);
+  }
+  const auto point_text = [](const Intrinsics& camera, int digits) {
+    return "(" + format_readable(camera.cx_px, digits) + ", " + format_readable(camera.cy_px, digits) +
+           ") px";
+  };
+  if (!error.principal.isZero())
+    return "with a principal point of about " + point_text(right, 2) + " than of " + point_text(stated, 4);
+  return std::nullopt;
+}
+
+/// Returns the words "turned by ..." or "about ... away ..."; nullopt if the camera is where the poses are.
+std::optional<std::string> other_place(const CameraError& error) {
+  constexpr double kDegrees = 57.29577951308232;
+  if (!error.turn_rad.isZero())
+    return "turned by about " + format_readable(kDegrees * error.turn_rad.norm(), 2) +
+           " degrees from their axes";
+  if (!error.shift_m.isZero())
+    return "about " + format_readable(error.shift_m.norm(), 2) + " m from their origin";
+  return std::nullopt;
 }
 
 void adopt_or_advise(DecidedRecording& recording, const Hypothesis& now, const Hypothesis& best,
@@ -506,12 +619,18 @@ void adopt_or_advise(DecidedRecording& recording, const Hypothesis& now, const H
                     format_readable(best.depth_factor, 2) + "; is the unit of depth " +
                     format_readable(unit_m, 3) + " m, or that of the poses another one?",
                 0, unit_option(unit_m), true});
-  } else if (best.focal_factor != 1.0) {
+  } else if (const auto other = other_camera(camera, best.camera)) {
     report.add({"camera",
-                "depth of nearby frames agrees better with a focal length of about " +
-                    format_readable(best.focal_factor * camera.fx_px, 2) + " px than with " +
-                    format_readable(camera.fx_px, 4) + " px (" + recording.facts.camera_source + ")",
+                "depth of nearby frames agrees better " + *other + " (" + recording.facts.camera_source + ")",
                 0, "--camera FILE", true});
+  } else if (const auto place = other_place(best.camera)) {
+    report.add({"poses",
+                "depth of nearby frames differs by " + mm_text(now.median_m) +
+                    " under the recorded poses, but by " + mm_text(best.median_m) +
+                    " if the depth camera is " + *place +
+                    "; are they the poses of another frame than the depth camera's?" +
+                    (recording.poses_are_used ? "" : " They are not used"),
+                0, "--poses tracked", true});
   } else {
     const std::string found = "depth of nearby frames differs by " + mm_text(now.median_m) +
                               " under the recorded poses, but by " + mm_text(best.median_m) +
@@ -554,13 +673,13 @@ void question_poses(DecidedRecording& recording, const std::vector<Pair>& near_p
                            const std::vector<Pair>& far_of) {
     const PoseOf pose = under(hypothesis.convention);
     const DepthDifference near =
-        mean_difference(near_of, samples, pose, hypothesis.depth_factor, hypothesis.focal_factor);
+        mean_difference(near_of, samples, pose, hypothesis.depth_factor, hypothesis.camera);
     hypothesis.near = near.disagreement;
     hypothesis.median_m = near.median_m;
     hypothesis.far =
-        mean_difference(far_of, samples, pose, hypothesis.depth_factor, hypothesis.focal_factor).disagreement;
+        mean_difference(far_of, samples, pose, hypothesis.depth_factor, hypothesis.camera).disagreement;
     hypothesis.brightness =
-        mean_brightness_disagreement(far_of, samples, pose, hypothesis.depth_factor, hypothesis.focal_factor)
+        mean_brightness_disagreement(far_of, samples, pose, hypothesis.depth_factor, hypothesis.camera)
             .value_or(0.0);
   };
   Hypothesis now{.convention = recording.pose_convention};
@@ -576,6 +695,12 @@ void question_poses(DecidedRecording& recording, const std::vector<Pair>& near_p
   evidence.pose_disagreement = now.near;
   evidence.far_pose_disagreement = now.far;
   evidence.pose_difference_m = now.median_m;
+  evidence.is_scale_confirmed = true;
+  for (const double factor : {0.5, 2.0}) {
+    Hypothesis scaled{.convention = now.convention, .depth_factor = factor};
+    measure(scaled, near_pairs, far_pairs);
+    evidence.is_scale_confirmed &= scaled.both() > now.both() + kClearlyBetter;
+  }
   if (now.near < kSurelyAgrees && now.far < kSurelyAgrees) return;
 
   // Poses of other frames exist for other pairs: a shift is compared with the poses as recorded on the pairs
@@ -616,8 +741,24 @@ void question_poses(DecidedRecording& recording, const std::vector<Pair>& near_p
       if (next.both() < best.both()) best = next, goes_on = true;
     }
   }
-  if (best.both() < now.both() && best.near < kAgrees)
-    return adopt_or_advise(recording, now, best, samples.full_camera(), is_convention_given);
+  // Different faults may explain the differences alike: all that come near the best one are named.
+  constexpr double kAlike = 0.03;
+  std::vector<Hypothesis> fits;
+  for (const Fitted& fitted : kFitted)
+    if (const auto fitting =
+            fit(fitted, now, [&](Hypothesis& next) { measure(next, near_pairs, far_pairs); }))
+      fits.push_back(*fitting);
+  std::sort(fits.begin(), fits.end(),
+            [](const Hypothesis& a, const Hypothesis& b) { return a.both() < b.both(); });
+  if (!fits.empty() && fits.front().both() < best.both()) best = fits.front();
+  std::erase_if(fits, [&](const Hypothesis& each) { return each.both() > best.both() + kAlike; });
+  if (best.both() < now.both() && best.near < kAgrees) {
+    if (fits.empty() || fits.front().both() > best.both())
+      return adopt_or_advise(recording, now, best, samples.full_camera(), is_convention_given);
+    for (const Hypothesis& each : fits)
+      adopt_or_advise(recording, now, each, samples.full_camera(), is_convention_given);
+    return;
+  }
   if (now.near <= kDisagrees && now.far <= kFarDisagrees && now.far > kDoubtful)
     recording.report->add(
         {"poses",
@@ -660,9 +801,9 @@ std::optional<Eigen::Isometry3d> register_depth(const DepthImage& from, const De
 /// depth plus that of brightness by place; nullopt where the frames cannot be registered.
 std::vector<std::optional<double>> disagreements_when_registered(const std::vector<std::size_t>& places,
                                                                  Samples& samples, const DepthNoise& noise,
-                                                                 double focal_factor) {
+                                                                 const CameraError& error) {
   constexpr std::array<std::size_t, 3> kSteps = {3, 6, 12};
-  const Intrinsics camera = with_focal(samples.camera(), focal_factor);
+  const Intrinsics camera = without_error(samples.camera(), error);
   std::vector<std::optional<double>> disagreements;
   for (const std::size_t place : places) {
     const Sample* a = samples.at(place);
@@ -682,9 +823,9 @@ std::vector<std::optional<double>> disagreements_when_registered(const std::vect
   return disagreements;
 }
 
-/// Questions the focal length of a recording without poses: under a wrong one, depth images of a camera that
-/// turns cannot be registered well.
-void question_focal(const DecidedRecording& recording, Samples& samples) {
+/// Questions the camera of a recording without poses: under a wrong one, depth images of a camera that turns
+/// cannot be registered well.
+void question_camera(const DecidedRecording& recording, Samples& samples) {
   constexpr std::size_t kPlacesRegistered = 8, kLongest = 12, kLeastPlaces = 4;
   constexpr double kBetter = 0.08, kMostPlaces = 0.75, kBetterEverywhere = 0.045, kNearlyAll = 0.85;
   const std::size_t frames = recording.frames.size();
@@ -693,10 +834,22 @@ void question_focal(const DecidedRecording& recording, Samples& samples) {
   for (std::size_t k = 0; k < kPlacesRegistered; ++k)
     places.push_back(k * (frames - 1 - kLongest) / (kPlacesRegistered - 1));
   const DepthNoise& noise = recording.facts.rig.depth_noise;
-  const auto now = disagreements_when_registered(places, samples, noise, 1.0);
-  double best_gain = 0.0, best_factor = 1.0;
-  for (const double factor : {0.7, 0.77, 0.87, 1.15, 1.3, 1.43}) {
-    const auto then = disagreements_when_registered(places, samples, noise, factor);
+  const auto now = disagreements_when_registered(places, samples, noise, {});
+  double best_gain = 0.0;
+  CameraError best;
+  std::vector<CameraError> tried;
+  for (const double factor : {0.7, 0.77, 0.87, 1.15, 1.3, 1.43})
+    tried.push_back({.fx_factor = factor, .fy_factor = factor});
+  for (const double factor : {0.77, 1.3}) {
+    tried.push_back({.fx_factor = factor});
+    tried.push_back({.fy_factor = factor});
+  }
+  for (const double part : {-0.09, 0.09}) {
+    tried.push_back({.principal = {part, 0.0}});
+    tried.push_back({.principal = {0.0, part}});
+  }
+  for (const CameraError& error : tried) {
+    const auto then = disagreements_when_registered(places, samples, noise, error);
     std::vector<double> gains;  // of the places where both can be registered
     for (std::size_t k = 0; k < places.size(); ++k)
       if (now[k] && then[k]) gains.push_back(*now[k] - *then[k]);
@@ -708,15 +861,13 @@ void question_focal(const DecidedRecording& recording, Samples& samples) {
     const bool is_clear =
         (gain > kBetter && part >= kMostPlaces) ||
         (gain > kBetterEverywhere && part > kNearlyAll && gains.size() + 1 >= places.size());
-    if (is_clear && gain > best_gain) best_gain = gain, best_factor = factor;
+    if (is_clear && gain > best_gain) best_gain = gain, best = error;
   }
-  if (best_factor == 1.0) return;
-  recording.report->add({"camera",
-                         "depth of nearby frames agrees better with a focal length of about " +
-                             format_readable(best_factor * samples.full_camera().fx_px, 2) +
-                             " px than with " + format_readable(samples.full_camera().fx_px, 4) + " px (" +
-                             recording.facts.camera_source + ")",
-                         0, "--camera FILE", true});
+  if (const auto other = other_camera(samples.full_camera(), best))
+    recording.report->add(
+        {"camera",
+         "depth of nearby frames agrees better " + *other + " (" + recording.facts.camera_source + ")", 0,
+         "--camera FILE", true});
 }
 
 }  // namespace
@@ -767,8 +918,20 @@ void question_depth(DecidedRecording& recording, bool is_convention_given) {
   if (posed >= 3) {
     if (!is_questioned) question_poses(recording, pairs, samples, is_convention_given);
   } else if (!is_questioned) {
-    question_focal(recording, samples);
+    question_camera(recording, samples);
   }
+  const RecordingFacts& facts = recording.facts;
+  const bool is_stated = facts.unit_origin != Origin::kFormat && facts.unit_origin != Origin::kAssumed;
+  const std::vector<InputDecision> reported = recording.report->decisions();
+  const bool is_asked = std::any_of(reported.begin(), reported.end(), [](const InputDecision& decision) {
+    return decision.topic == "unit" && decision.is_advice;
+  });
+  if (facts.is_written_by_many && !is_stated && !evidence.is_scale_confirmed && !is_asked)
+    recording.report->add({"unit",
+                           "nothing in the recording confirms a unit of depth of " +
+                               format_general(recording.depth_unit_m, 4) + " m (" + facts.unit_source +
+                               "): " + (posed >= 3 ? "its poses hardly move" : "it has no poses"),
+                           0, "--depth-unit M"});
 }
 
 }  // namespace roomradar

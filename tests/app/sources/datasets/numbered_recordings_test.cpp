@@ -207,6 +207,21 @@ TEST(StrayScanner, GivesSureDepthColourOfTheVideoAndPoses) {
   EXPECT_TRUE(frame.down_camera->isApprox(Eigen::Vector3d(0, -1, 0)));
 }
 
+TEST(StrayScanner, ABadConfidenceImageCostsNoDepth) {
+  const TemporaryFolder folder;
+  write_stray(folder.path());
+  write_text(folder.path() / "confidence" / "000007.png", "cut");
+  write_mask_file(MaskImage(8, 6, 2), folder.path() / "confidence" / "000009.png");
+  ReadAll all;
+  const std::string said = decisions_about(
+      [&](const SourceOptions& options) { return open_folder(folder.path(), options); }, &all);
+  ASSERT_EQ(all.frames.size(), static_cast<std::size_t>(kVideoFrames)) << said;
+  EXPECT_EQ(all.frames[7].depth_m.at(3, 2), 1.007F);
+  EXPECT_EQ(all.frames[8].depth_m.at(3, 2), 0.0F);
+  EXPECT_TRUE(contains(said, "2 confidence images cannot be read; all depth of their frames is used"))
+      << said;
+}
+
 TEST(StrayScanner, SeeksInTheVideo) {
   const TemporaryFolder folder;
   write_stray(folder.path());

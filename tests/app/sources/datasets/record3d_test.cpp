@@ -201,6 +201,38 @@ TEST(Record3d, ReadsMetadataOfOtherVersions) {
   EXPECT_TRUE(contains(said, "no usable time stamp")) << said;
 }
 
+TEST(Record3d, ReadsNumbersInQuotes) {
+  const TemporaryFolder folder;
+  std::string quoted;  // each number of the metadata in quotes
+  for (std::size_t i = 0; i < kMetadata.size();) {
+    const std::size_t end = kMetadata.find_first_not_of("0123456789.", i);
+    const bool is_name = i > 0 && kMetadata[i - 1] == '"';
+    if (end == i || is_name)
+      quoted += kMetadata[i++];
+    else
+      quoted += '"' + kMetadata.substr(i, end - i) + '"', i = end;
+  }
+  write_export(folder.path(), quoted);
+  const auto all = read_all(*open_folder(folder.path()));
+  ASSERT_EQ(all.frames.size(), 3U);
+  EXPECT_EQ(all.frames[1].stamp_s, 0.25);
+  EXPECT_EQ(all.frames[1].depth_camera, (Intrinsics{6, 8, 10, 11, 2.5, 3.5}));
+  EXPECT_TRUE(all.frames[1].T_world_camera.has_value());
+}
+
+TEST(Record3d, ReadsDepthThatWasConvertedToPng) {
+  const TemporaryFolder folder;
+  write_export(folder.path());
+  for (int i = 0; i < 3; ++i) {
+    const std::string name = (folder.path() / "depth" / std::to_string(i)).string();
+    cv::imwrite(name + ".png", cv::Mat(kHeight, kWidth, CV_16UC1, cv::Scalar(1500 + i)));
+    fs::remove(name + ".exr");
+  }
+  const auto all = read_all(*open_folder(folder.path()));
+  ASSERT_EQ(all.frames.size(), 3U);
+  EXPECT_EQ(all.frames[2].depth_m.at(3, 2), 1.502F);
+}
+
 TEST(Record3d, IsReadWithoutPosesAndStamps) {
   for (const char* rest : {"", R"(,"poses":[],"frameTimestamps":[])", R"(,"poses":null,"frameTimestamps":null)"}) {
     const TemporaryFolder folder;

@@ -179,9 +179,15 @@ std::vector<Mutation> mutations() {
     add("focal x " + std::to_string(factor), {"camera"},
         [factor](RecordingFacts& f) { scale_focal(f, factor); });
 
+  add("focal length of y x 1.3", {"camera"}, [](RecordingFacts& f) { f.rig.depth_camera.fy_px *= 1.3; });
+  add("principal point 0.09 widths right", {"camera"},
+      [](RecordingFacts& f) { f.rig.depth_camera.cx_px += 0.09 * f.rig.depth_camera.width_px; });
+  add("principal point 0.09 widths down", {"camera"},
+      [](RecordingFacts& f) { f.rig.depth_camera.cy_px += 0.09 * f.rig.depth_camera.width_px; });
+
   const auto poses = [&](const std::string& name,
                          std::function<Eigen::Isometry3d(Eigen::Isometry3d)> change) {
-    add("poses " + name, {"poses", "unit"}, [change](RecordingFacts& f) {
+    add("poses " + name, {"poses", "unit", "camera"}, [change](RecordingFacts& f) {
       change_poses(
           f, [change](std::optional<Eigen::Isometry3d> T) { return T ? std::optional(change(*T)) : T; });
     });
@@ -194,6 +200,22 @@ std::vector<Mutation> mutations() {
   poses("millimetres", [](Eigen::Isometry3d T) { return T.translation() *= 1000.0, T; });
   poses("centimetres", [](Eigen::Isometry3d T) { return T.translation() *= 100.0, T; });
   poses("half as far", [](Eigen::Isometry3d T) { return T.translation() *= 0.5, T; });
+  poses("1.1 times as far", [](Eigen::Isometry3d T) { return T.translation() *= 1.1, T; });
+  poses("0.9 times as far", [](Eigen::Isometry3d T) { return T.translation() *= 0.9, T; });
+  for (const double angle_deg : {5.0, 10.0})
+    for (const Eigen::Vector3d& axis : {Eigen::Vector3d::UnitX().eval(), Eigen::Vector3d::UnitY().eval(),
+                                        Eigen::Vector3d::UnitZ().eval()}) {
+      const Eigen::Isometry3d tilt(Eigen::AngleAxisd(angle_deg * std::numbers::pi / 180.0, axis));
+      poses("of axes turned by " + std::to_string(angle_deg) + " about " +
+                "xyz"[axis.y() != 0.0   ? 1
+                      : axis.z() != 0.0 ? 2
+                                        : 0],
+            [tilt](const Eigen::Isometry3d& T) { return T * tilt; });
+    }
+  poses("of a body 0.15 m behind",
+        [](Eigen::Isometry3d T) { return T.translate(Eigen::Vector3d(0, 0, 0.15)); });
+  poses("of a body 0.15 m beside",
+        [](Eigen::Isometry3d T) { return T.translate(Eigen::Vector3d(0.15, 0, 0)); });
   poses("rotation transposed", [](Eigen::Isometry3d T) { return T.linear().transposeInPlace(), T; });
   poses("mirrored", [](Eigen::Isometry3d T) { return T.translation().y() *= -1.0, T; });
   add("frames shifted: poses by one", {"poses"},
@@ -267,11 +289,14 @@ std::vector<Mutation> mutations() {
   return all;
 }
 
-/// Changes that nothing in the recording contradicts: the unit of depth of a camera without poses, and the
-/// scale of poses between which the camera only turns.
+/// Changes that nothing in the recording contradicts: the unit of depth of a camera without poses, the scale
+/// of poses between which the camera only turns, and small errors of a camera without poses or without
+/// colour.
 bool is_indistinguishable(const std::string& recording, const std::string& mutation) {
-  const bool has_no_poses = recording == "time of flight, no poses", only_turns = recording == "fr1_rpy";
-  return (has_no_poses && mutation.starts_with("unit")) ||
+  const bool has_no_poses = recording == "time of flight, no poses", only_turns = recording == "fr1_rpy",
+             has_no_colour = recording == "stray";
+  return (has_no_poses && (mutation.starts_with("unit") || mutation.ends_with("down"))) ||
+         ((has_no_poses || has_no_colour) && mutation == "focal length of y x 1.3") ||
          (only_turns && (mutation == "unit x 0.500000" || mutation == "poses mirrored"));
 }
 
@@ -292,9 +317,10 @@ std::string difference(const DecidedRecording& got, const DecidedRecording& want
     if (std::abs(got_s - wanted_s) > 1.5 * period_s)
       return "other times, by " + std::to_string(got_s - wanted_s) + " s";
   }
-  for (std::size_t i = 0; i + 10 < got.frames.size(); i += 10) {
+  constexpr std::size_t kApart = 30;
+  for (std::size_t i = 0; i + kApart < got.frames.size(); i += 10) {
     const auto relative = [i](const DecidedRecording& recording) -> std::optional<Eigen::Isometry3d> {
-      const auto a = pose_of(recording, i), b = pose_of(recording, i + 9);
+      const auto a = pose_of(recording, i), b = pose_of(recording, i + kApart);
       if (!a || !b) return std::nullopt;
       return a->inverse() * *b;
     };
@@ -307,8 +333,13 @@ std::string difference(const DecidedRecording& got, const DecidedRecording& want
   }
   const double unit = got.depth_unit_m / wanted.depth_unit_m * unit_factor;
   if (std::abs(unit - 1.0) > 0.02) return "another unit";
-  const double focal = got.facts.rig.depth_camera.fx_px / wanted.facts.rig.depth_camera.fx_px;
-  if (std::abs(focal - 1.0) > 0.02) return "another focal length";
+  const Intrinsics &got_camera = got.facts.rig.depth_camera, &wanted_camera = wanted.facts.rig.depth_camera;
+  if (std::abs(got_camera.fx_px / wanted_camera.fx_px - 1.0) > 0.02 ||
+      std::abs(got_camera.fy_px / wanted_camera.fy_px - 1.0) > 0.02)
+    return "another focal length";
+  if (std::hypot(got_camera.cx_px - wanted_camera.cx_px, got_camera.cy_px - wanted_camera.cy_px) >
+      0.02 * wanted_camera.width_px)
+    return "another principal point";
   return {};
 }
 
@@ -371,6 +402,7 @@ TEST(Mutations, AreUndoneOrNamed) {
       const bool is_unit = mutation.name.starts_with("unit");
       const double factor = is_unit ? std::stod(mutation.name.substr(7)) : 1.0;
       ++tried;
+
       std::string why, said;
       try {
         const DecidedRecording got = decide(changed, {}, asking());
