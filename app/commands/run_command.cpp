@@ -23,31 +23,9 @@ void save_changed(SavedMap& map, std::size_t changes, const std::string& folder)
   std::printf("%s: saved with %zu changes\n", folder.c_str(), changes);
 }
 
-/// Prints to stderr how a replay compares with the recorded results.
-nlohmann::json report_replay(const ReplayCheck& check) {
-  std::fprintf(stderr, "replay: %lld of %lld frames the same as recorded",
-               static_cast<long long>(check.same()), static_cast<long long>(check.recorded()));
-  if (check.different() > 0)
-    std::fprintf(stderr, ", the first that is not: %lld", static_cast<long long>(check.first_different()));
-  std::fprintf(stderr, "\n");
-  return {{"same", check.same()}, {"different", check.different()}, {"recorded", check.recorded()}};
-}
-
-/// Closes the stream of frames, and prints how many lines its reader did not get.
-void close_stream(OpenedRun& run) {
-  const LineStream& lines = run.stream->lines();
-  run.stream->close();
-  if (lines.is_reader_gone())
-    std::fprintf(stderr, "--stream: its reader closed it before the run's end; %lld lines were dropped\n",
-                 static_cast<long long>(lines.dropped()));
-  else if (lines.dropped() > 0)
-    std::fprintf(stderr, "--stream: its reader was too slow; %lld lines were dropped\n",
-                 static_cast<long long>(lines.dropped()));
-}
-
 /// Returns why all objects that a run was to drop or place are still out of the room; empty if one was in it.
 std::string why_nothing_dropped(const OpenedRun& run) {
-  if (run.options.window || run.check) return {};
+  if (run.options.window || run.is_replay) return {};
   if (has<RemoveObject>(run.script)) return {};  // an object may have been in the room
   const std::vector<WaitingDrop>& waiting = run.session->waiting_drops();
   for (const auto& object : run.session->objects())
@@ -65,16 +43,9 @@ int play(OpenedRun& run) {
   const RunTotals& totals = run.totals;
   DeferredErrors faults;
   faults.attempt([&] { play_to_end(run); });
-  const std::string nothing_dropped =
-      totals.located > 0 && faults.first().empty() ? why_nothing_dropped(run) : "";
-  if (run.video && !nothing_dropped.empty()) {
-    run.video->discard();
-    run.video.reset();
-  }
-  if (run.video) faults.attempt([&] { run.video->close(); });
-  if (run.frames_csv) faults.attempt([&] { run.frames_csv->close(); });
-  if (run.trajectory) faults.attempt([&] { run.trajectory->close(); });
-  if (run.stream) faults.attempt([&] { close_stream(run); });
+  if (totals.located > 0 && faults.first().empty()) run.nothing_dropped = why_nothing_dropped(run);
+  const RunEnd end = run.nothing_dropped.empty() ? RunEnd::kNormal : RunEnd::kNothingDropped;
+  for (const std::unique_ptr<FrameSink>& sink : run.sinks) faults.attempt([&] { sink->finish(end); });
   if (totals.read == totals.skipped) {
     faults.throw_first();
     if (run.host && run.host->is_closed()) return 0;  // before the first frame
@@ -91,15 +62,14 @@ int play(OpenedRun& run) {
   run.report.results = results_of(totals, *run.session);
   if (run.input_lines) run.input_lines->say();
   run.report.results["input"] = to_json(run.input->decisions());
-  if (run.stream) run.report.results["stream_lines_dropped"] = run.stream->lines().dropped();
   if (run.budget) run.report.results["budget"] = run.budget->report();
-  if (run.check) run.report.results["replay"] = report_replay(*run.check);
+  for (const std::unique_ptr<FrameSink>& sink : run.sinks) sink->report(run.report.results);
   if (!faults.first().empty()) run.report.results["fault"] = faults.first();
   faults.attempt([&] { write_report(run.report, options.report); });
   print_summary(run);
   faults.throw_first();
-  if (!nothing_dropped.empty()) {
-    std::fprintf(stderr, "roomradar: %s: %s%s\n", options.source.c_str(), nothing_dropped.c_str(),
+  if (!run.nothing_dropped.empty()) {
+    std::fprintf(stderr, "roomradar: %s: %s%s\n", options.source.c_str(), run.nothing_dropped.c_str(),
                  options.video.empty() ? "" : ("; " + options.video + " is not written").c_str());
     return 1;
   }

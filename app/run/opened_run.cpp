@@ -15,19 +15,18 @@
 #include "app/objects/object_model.hpp"
 #include "app/quality/quality_json.hpp"
 #include "app/run/object_script.hpp"
+#include "app/run/opened_building.hpp"
 #include "app/session/apply_quality.hpp"
 #include "app/session/script/session_events.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/map/map_writer.hpp"
 #include "mapping/odometry/up_direction.hpp"
 #include "mapping/types/system/error.hpp"
-#include "mapping/types/system/make_folder.hpp"
 #include "mapping/types/system/process_memory.hpp"
 
 namespace roomradar {
 namespace {
 
-constexpr double kVideoFramesPerS = 30.0;
 constexpr std::size_t kLargeFile_bytes = 4U << 20U;  // larger than a frame's images
 
 /// Returns the objects as given; a plain text if there is one.
@@ -114,7 +113,8 @@ void say_if_up_is_not_known(const MapInfo& info, const std::string& folder) {
 }
 
 /// Opens the source, and the recorded results if the source is a session.
-std::unique_ptr<FrameSource> open_frames(OpenedRun& run) {
+/// @param check  set if the source is a session
+std::unique_ptr<FrameSource> open_frames(OpenedRun& run, std::optional<ReplayCheck>& check) {
   const RunOptions& options = run.options;
   if (options.poses == PoseOrigin::kRecorded)
     require_recorded_world(run.map.info, options.map, options.source);
@@ -128,12 +128,13 @@ std::unique_ptr<FrameSource> open_frames(OpenedRun& run) {
   run.input_lines->say();
   run.is_live = !opened->rewind();  // frame_count() would not tell: with --frames a device has one too
   if (is_session_folder(options.source)) {
-    run.check.emplace(options.source);
+    run.is_replay = true;
+    check.emplace(options.source);
     if (const std::string fault = map_difference(options.source, run.map.info); !fault.empty())
       std::fprintf(stderr, "roomradar: %s\n", fault.c_str());
   }
   // A session that was cut off has no quit event: it is replayed as far as it has results.
-  if (run.check && !has<Quit>(run.script)) run.last_frame = run.check->last_frame();
+  if (check && !has<Quit>(run.script)) run.last_frame = check->last_frame();
   run.interrupt.emplace();
   return opened;
 }
@@ -154,7 +155,8 @@ bool makes_picture(const RunOptions& options, bool has_window) {
   return has_window || !options.video.empty() || !options.pictures.empty();
 }
 
-SessionConfig config_of(const OpenedRun& run, bool has_picture) {
+/// @param tiles  set if the map is a building
+SessionConfig config_of(const OpenedRun& run, bool has_picture, std::optional<TileWindowConfig> tiles) {
   const RunOptions& options = run.options;
   SessionConfig config;
   config.poses = options.poses;
@@ -166,7 +168,7 @@ SessionConfig config_of(const OpenedRun& run, bool has_picture) {
     config.watch = [budget = run.budget.get()](FramePart part, const FrameLoad& load) {
       return budget->before(part, load);
     };
-  config.tiles = run.tiles;
+  config.tiles = std::move(tiles);
   // A live run does not wait, unless it is recorded and must be reproducible.
   const bool waits = !run.is_live || !options.record_session.empty();
   if (config.tiles) config.tiles->wait = waits;
@@ -241,8 +243,7 @@ void add_object(Session& session, const ScriptEvent& event, const AddObject& add
                  ms_since(start) / 1e3);
 }
 
-void open_session(OpenedRun& run, bool has_picture, std::future<ObjectParts> first_object) {
-  const SessionConfig config = config_of(run, has_picture);
+void open_session(OpenedRun& run, const SessionConfig& config, std::future<ObjectParts> first_object) {
   StaticMap* const octree =
       config.map_updates ? &run.map.octree.load() : nullptr;  // read only if it may change
   run.session = std::make_unique<Session>(run.map, config, octree);
@@ -257,13 +258,6 @@ void open_session(OpenedRun& run, bool has_picture, std::future<ObjectParts> fir
   for (const ObjectNotice& notice : run.session->take_notices())
     std::fprintf(stderr, "roomradar: %s%s\n", notice.name.c_str(), notice.text.c_str());
   release_unused_memory();  // what reading the map's files needed
-}
-
-void open_outputs(OpenedRun& run) {
-  const RunOptions& options = run.options;
-  if (!options.video.empty()) run.video = std::make_unique<VideoWriter>(options.video, kVideoFramesPerS);
-  if (options.pictures.empty()) return;
-  make_folder(options.pictures);
 }
 
 /// Wraps the frames so they are recorded, if requested.
@@ -287,7 +281,8 @@ void play_frames(OpenedRun& run, std::unique_ptr<FrameSource> frames) {
   run.source = ended_by_interrupt(std::move(played));
 }
 
-void open_map(OpenedRun& run) {
+/// Opens the map. Returns the settings of the tiles if the map is a building.
+std::optional<TileWindowConfig> open_map(OpenedRun& run) {
   const RunOptions& options = run.options;
   if (!is_building(options.map)) {
     if (options.max_memory_mb > 0.0)
@@ -295,11 +290,15 @@ void open_map(OpenedRun& run) {
                   " is the map of a room, which is loaded as a whole; the option is for buildings");
     mmap_large_allocations(kLargeFile_bytes);
     run.map = load_map(options.map, KeyframeReading::kMeanwhile);
-    return;
+    return std::nullopt;
   }
   OpenedBuilding building = open_building(options, run.script);
   run.map = std::move(building.map);
-  run.tiles = std::move(building.tiles);
+  return std::move(building.tiles);
+}
+
+void add(std::unique_ptr<FrameSink> sink, FrameSinks& sinks) {
+  if (sink) sinks.push_back(std::move(sink));
 }
 
 }  // namespace
@@ -321,20 +320,25 @@ std::unique_ptr<OpenedRun> open_run(const RunOptions& options, UiChannel* link) 
   require_one_quality(options, run.script);
   if (!options.record_session.empty()) require_can_become_session(options.record_session);
   std::future<ObjectParts> first_object = first_object_of(run.script);
-  open_map(run);
+  std::optional<TileWindowConfig> tiles = open_map(run);
   if (!options.save_map.empty()) run.map.texture.load();  // is carried over when the map is saved
   say_if_up_is_not_known(run.map.info, options.map);
   const bool has_picture = makes_picture(options, link != nullptr);
-  std::unique_ptr<FrameSource> frames = open_frames(run);
+  std::optional<ReplayCheck> check;
+  std::unique_ptr<FrameSource> frames = open_frames(run, check);
   open_budget(run, has_picture);
-  open_session(run, has_picture, std::move(first_object));
-  open_outputs(run);
-  if (!options.frames_csv.empty()) run.frames_csv.emplace(options.frames_csv);
-  if (!options.trajectory.empty()) run.trajectory.emplace(options.trajectory, kTrajectoryHeader);
+  open_session(run, config_of(run, has_picture, std::move(tiles)), std::move(first_object));
+  std::unique_ptr<FrameSink> video = video_sink(options);
+  std::unique_ptr<FrameSink> pictures = picture_sink(options);
   // Last, so that a run that fails to open leaves no folder that blocks the next attempt.
   record_frames(run, frames);
   play_frames(run, std::move(frames));
-  if (!options.stream.empty()) run.stream.emplace(options.stream, options.source, options.map);
+  add(fingerprint_sink(run.recorder ? &*run.recorder : nullptr, std::move(check)), run.sinks);
+  add(std::move(video), run.sinks);
+  add(frame_use_sink(options), run.sinks);
+  add(trajectory_sink(options), run.sinks);
+  add(stream_sink(options), run.sinks);
+  add(std::move(pictures), run.sinks);
   if (link != nullptr)
     run.host.emplace(*link, *run.session, *run.playback, run.report.times, shown_room(run.map), run.is_live);
   return opened;

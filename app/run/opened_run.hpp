@@ -2,22 +2,20 @@
 #pragma once
 #include <memory>
 #include <optional>
+#include <string>
 
+#include "app/cli/input_lines.hpp"
 #include "app/cli/interrupt.hpp"
 #include "app/cli/options/run_options.hpp"
 #include "app/cli/report.hpp"
 #include "app/cli/session_folder.hpp"
-#include "app/media/video_writer.hpp"
-#include "app/run/frame_stream.hpp"
-#include "app/run/growing_file.hpp"
-#include "app/run/opened_building.hpp"
+#include "app/run/frame_sinks.hpp"
 #include "app/run/run_budget.hpp"
 #include "app/run/run_results.hpp"
 #include "app/session/script/script.hpp"
 #include "app/session/session.hpp"
 #include "app/sources/recordings/playback_source.hpp"
 #include "app/window/link/play_host.hpp"
-#include "app/cli/input_lines.hpp"
 #include "mapping/map/map_folder.hpp"
 
 namespace roomradar {
@@ -29,13 +27,11 @@ struct OpenedRun {
   Report report;
   Script script;
   SavedMap map;
-  /// Set if the map is a building.
-  std::optional<TileWindowConfig> tiles;
   bool is_live = false;
-  /// Set with --record-session.
+  /// True if the source is a recorded session.
+  bool is_replay = false;
+  /// Records events and frames; set with --record-session.
   std::optional<SessionRecorder> recorder;
-  /// Set if the source is a recorded session.
-  std::optional<ReplayCheck> check;
   /// Last frame to process; unset if the run ends with the source or with a quit event.
   std::optional<std::int64_t> last_frame;
   std::optional<Interrupt> interrupt;
@@ -49,15 +45,15 @@ struct OpenedRun {
   std::unique_ptr<RunBudget> budget;  ///< set with --budget-ms
   /// The AR session, with the script's objects loaded.
   std::unique_ptr<Session> session;
-  std::unique_ptr<VideoWriter> video;      ///< set with --video
-  std::optional<FrameUseFile> frames_csv;  ///< set with --frames-csv
-  std::optional<GrowingFile> trajectory;   ///< set with --trajectory
-  std::optional<FrameStream> stream;       ///< set with --stream
+  /// The requested outputs, in the order in which a frame is written.
+  FrameSinks sinks;
   /// Connection to the window; unset if there is no window.
   std::optional<PlayHost> host;
   RunTotals totals;
   /// True if an event ended the run.
   bool was_quit = false;
+  /// Set after the last frame: why no object to drop or place was ever in the room; empty if one was.
+  std::string nothing_dropped;
 };
 
 /// Opens all inputs and outputs named in the options, reads the map, and creates the session.

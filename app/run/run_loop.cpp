@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -13,11 +13,9 @@
 #include <vector>
 
 #include "app/cli/progress.hpp"
-#include "app/media/picture_file.hpp"
 #include "app/objects/unknown_support.hpp"
 #include "app/session/script/session_events.hpp"
 #include "mapping/types/system/error.hpp"
-#include "mapping/types/system/format_number.hpp"
 
 namespace roomradar {
 namespace {
@@ -39,13 +37,6 @@ void control(PlaybackSource& source, CameraPlay camera) {
       source.resume();
       break;
   }
-}
-
-/// Writes the composed picture, and the depth camera's mask of dynamic pixels.
-void write_pictures(const Session& session, const FrameResult& result, const std::filesystem::path& name) {
-  if (!session.picture().empty()) write_png(session.picture(), name.string() + ".png");
-  if (result.status == FrameStatus::kDone)
-    write_png(session.scene().foreground().dynamic_mask, name.string() + ".moved.png");
 }
 
 class RunLoop {
@@ -87,10 +78,8 @@ class RunLoop {
   std::set<std::pair<std::string, bool>> departed_;
   double last_event_s_ = 0.0;             ///< run time of the last event
   std::optional<double> repeats_from_s_;  ///< run time since which the source repeats itself
-  std::int64_t last_picture_ = -1;        ///< highest index of the source's frames that has a picture
 
   bool repeats_for_ever();
-  std::string picture_name();
   void perform(const ScriptEvent& event, bool is_from_script);
   ScriptEvent apply(const ScriptEvent& event);
   void record(const ScriptEvent& event);
@@ -136,7 +125,7 @@ void RunLoop::perform_due() {
 /// nothing can end the run: no window, no recorded end, and the last event was 5 s ago.
 bool RunLoop::repeats_for_ever() {
   constexpr double kAfterLastEvent_s = 5.0;
-  if (run_.host || run_.check || run_.is_live) return false;
+  if (run_.host || run_.is_replay || run_.is_live) return false;
   const PlaybackSource& playback = *run_.playback;
   const bool repeats = playback.is_repeating() || (playback.at_end() == AtEnd::kLoop && playback.is_again());
   if (!repeats || next_event_ < run_.script.events.size()) {
@@ -252,7 +241,7 @@ void RunLoop::say_what_rests_on_unknown() {
 /// Reports the events of the script that were due after the last frame.
 void RunLoop::say_what_never_came() {
   const std::vector<ScriptEvent>& events = run_.script.events;
-  if (run_.was_quit || run_.host || run_.check || next_event_ >= events.size()) return;
+  if (run_.was_quit || run_.host || run_.is_replay || next_event_ >= events.size()) return;
   const ScriptEvent& first = events[next_event_];
   std::string sentence = std::to_string(events.size() - next_event_) + " of " +
                          std::to_string(events.size()) +
@@ -276,31 +265,9 @@ void RunLoop::count_skipped(const std::string& fault) {
   run_.totals.last_fault = fault;
 }
 
-/// Returns the source's frame number; if that frame is repeated (held or looped), the run's number follows.
-std::string RunLoop::picture_name() {
-  const bool is_again = frame_.index <= last_picture_;
-  last_picture_ = std::max(last_picture_, frame_.index);
-  return format_frame_number(frame_.index) + (is_again ? "-" + format_frame_number(run_frame_) : "");
-}
-
 void RunLoop::keep(const FrameResult& result) {
-  const Session& session = *run_.session;
-  if (run_.recorder || run_.check) {
-    const FrameFingerprint fingerprint = fingerprint_of(run_frame_, session);
-    if (run_.recorder) run_.recorder->write(fingerprint);
-    if (run_.check) run_.check->compare(fingerprint);
-  }
-  if (run_.video) run_.video->write_at(session.picture(), run_time_s_);
-  if (run_.frames_csv && result.status == FrameStatus::kDone)
-    run_.frames_csv->write(frame_.index, result.use, session.objects());
-  if (run_.trajectory && result.status == FrameStatus::kDone)
-    run_.trajectory->append(trajectory_line({frame_.index, frame_.stamp_s, result.T_world_camera}));
-  if (run_.stream)
-    run_.report.times.timed("stream", [&] {
-      run_.stream->write(run_frame_, run_time_s_, frame_, result, *run_.session, run_.report.times);
-    });
-  if (!run_.options.pictures.empty() && run_frame_ % run_.options.pictures_stride == 0)
-    write_pictures(session, result, std::filesystem::path(run_.options.pictures) / picture_name());
+  const RunFrame frame{run_frame_, run_time_s_, frame_, result, *run_.session, run_.report.times};
+  for (const std::unique_ptr<FrameSink>& sink : run_.sinks) sink->write(frame);
 }
 
 }  // namespace

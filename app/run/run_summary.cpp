@@ -120,7 +120,7 @@ void print_files(const OpenedRun& run) {
         if (std::filesystem::is_regular_file(status) || std::filesystem::is_directory(status))
           files += (files.empty() ? "" : ", ") + path;
       };
-  add(run.video ? options.video : "");
+  add(run.nothing_dropped.empty() ? options.video : "");
   add(options.pictures.empty() ? "" : options.pictures + "/");
   add(options.record_session.empty() ? "" : options.record_session + "/");
   add(options.save_map.empty() ? "" : options.save_map + "/");
