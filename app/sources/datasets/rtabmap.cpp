@@ -285,6 +285,88 @@ void note_other_cameras(const std::vector<Node>& nodes, const RtabmapCamera& use
                            other_focal, "--camera FILE", true});
 }
 
+/// The nodes with a depth image, by session and stamp.
+struct NodeTable {
+  std::vector<std::int64_t> rows{};  ///< per node: its row in the table Data
+  std::vector<Node> nodes{};
+  std::string camera_fault{};  ///< of the first camera that cannot be read
+};
+
+/// Reads the nodes, and adds a frame for each.
+NodeTable read_nodes(const SqliteFile& database, std::vector<StatedFrame>& frames) {
+  NodeTable table;
+  // The oldest databases have one session only.
+  const std::string session = database.has_column("Node", "map_id") ? "Node.map_id" : "0 * Node.id";
+  database.query("SELECT Data.rowid, Node.stamp, Node.pose, length(Data.image), Node.id, " + session +
+                     ", Data.calibration FROM Node JOIN Data ON Node.id = Data.id WHERE length(Data.depth) > "
+                     "0 ORDER BY " +
+                     session + ", Node.stamp, Node.id",
+                 {}, [&](const SqliteRow& row) {
+                   if (row.integer(3) > 0)
+                     frames.push_back({.time = {row.number(1)}, .colour = table.rows.size()});
+                   else
+                     frames.push_back({.time = {row.number(1)}});
+                   table.rows.push_back(row.integer(0));
+                   table.nodes.push_back({row.integer(4), row.integer(5), pose_in(row.bytes(2)), {}});
+                   try {
+                     table.nodes.back().camera = read_camera(row.bytes(6), database.name());
+                   } catch (const Error& fault) {
+                     if (table.camera_fault.empty()) table.camera_fault = fault.what();
+                   }
+                 });
+  return table;
+}
+
+/// The images of the nodes, which stay in the database.
+struct NodeImages {
+  std::shared_ptr<const SqliteFile> database;
+  std::vector<std::int64_t> rows;  ///< as NodeTable::rows
+
+  [[nodiscard]] std::string read(const char* column, std::size_t node) const {
+    return database->read_up_to("Data", column, rows[node], std::uint64_t{1} << 29U);
+  }
+};
+
+/// Returns the size of the first image that can be read, from the node `first` on, and the first fault of the
+/// others.
+/// @param has_image  callable that returns true if a node has an image in the column
+/// @param size_of    callable that returns the size of an encoded image
+template <typename HasImage, typename SizeOf>
+std::pair<std::optional<ImageSize>, std::string> first_size(const NodeImages& images, const char* column,
+                                                            std::size_t first, const HasImage& has_image,
+                                                            const SizeOf& size_of) {
+  std::string fault;
+  for (std::size_t k = 0; k < images.rows.size(); ++k) {
+    const std::size_t i = (first + k) % images.rows.size();
+    if (!has_image(i)) continue;
+    try {
+      return {size_of(images.read(column, i)), fault};
+    } catch (const Error& error) {
+      if (fault.empty()) fault = error.what();
+    }
+  }
+  return {std::nullopt, fault};
+}
+
+/// Sets the cameras of depth and colour: `camera`, scaled to the images.
+/// @param colour_size  nullopt: no colour image can be read
+void set_cameras(RtabmapCamera camera, ImageSize depth_size, std::optional<ImageSize> colour_size,
+                 const std::string& where, RecordingFacts& facts) {
+  if (camera.camera.width_px <= 0) {  // some drivers leave it out
+    const ImageSize size = colour_size.value_or(depth_size);
+    camera.camera.width_px = size.width_px;
+    camera.camera.height_px = size.height_px;
+  }
+  require_valid(camera.camera, (where + ", camera").c_str());
+  facts.rig.depth_camera = scaled_to_depth(camera.camera, depth_size, where);
+  facts.depth_lens = camera.lens;
+  facts.camera_source = "its table Data";
+  facts.is_depth_registered = true;
+  if (!colour_size) return;
+  facts.rig.colour_camera = scaled_to_depth(camera.camera, *colour_size, where);
+  facts.colour_lens = camera.lens;
+}
+
 }  // namespace
 
 bool is_rtabmap(const std::filesystem::path& path) {
@@ -303,83 +385,37 @@ RecordingFacts index_rtabmap(const std::filesystem::path& path) {
     throw Error(where + ": is of an RTAB-Map before 0.18; open it once in a newer one, which converts it");
 
   RecordingFacts facts{.name = std::filesystem::canonical(path).string()};
-  std::vector<std::int64_t> rows;
-  std::vector<Node> nodes;
-  std::string camera_fault;
-  // The oldest databases have one session only.
-  const std::string session = database->has_column("Node", "map_id") ? "Node.map_id" : "0 * Node.id";
-  database->query("SELECT Data.rowid, Node.stamp, Node.pose, length(Data.image), Node.id, " + session +
-                      ", Data.calibration FROM Node JOIN Data ON Node.id = Data.id WHERE length(Data.depth) > 0 ORDER BY " +
-                      session + ", Node.stamp, Node.id",
-                  {}, [&](const SqliteRow& row) {
-                    if (row.integer(3) > 0)
-                      facts.frames.push_back({.time = {row.number(1)}, .colour = rows.size()});
-                    else
-                      facts.frames.push_back({.time = {row.number(1)}});
-                    rows.push_back(row.integer(0));
-                    nodes.push_back({row.integer(4), row.integer(5), pose_in(row.bytes(2)), {}});
-                    try {
-                      nodes.back().camera = read_camera(row.bytes(6), where);
-                    } catch (const Error& fault) {
-                      if (camera_fault.empty()) camera_fault = fault.what();
-                    }
-                  });
-  if (rows.empty()) throw Error(where + ": contains no node with a depth image");
+  const NodeTable table = read_nodes(*database, facts.frames);
+  const std::vector<Node>& nodes = table.nodes;
+  if (nodes.empty()) throw Error(where + ": contains no node with a depth image");
   set_poses(*database, nodes, facts);
-
-  const auto read = [database](const char* column, std::int64_t row) {
-    return database->read_up_to("Data", column, row, std::uint64_t{1} << 29U);
-  };
-  const std::size_t first = first_of_usual_camera(nodes, camera_fault);
-  RtabmapCamera camera = *nodes[first].camera;
+  const std::size_t first = first_of_usual_camera(nodes, table.camera_fault);
+  const RtabmapCamera& camera = *nodes[first].camera;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     StatedFrame& frame = facts.frames[i];
     const RtabmapCamera& own = nodes[i].camera ? *nodes[i].camera : camera;
     if (frame.T_world_camera) frame.T_world_camera = *frame.T_world_camera * own.T_robot_camera;
   }
   note_other_cameras(nodes, camera, facts);
-  // Of the first images that can be read, from the first node with the usual camera on.
-  const auto size_by = [&](const char* column, const auto& size_of) {
-    std::optional<ImageSize> size;
-    std::string fault;
-    for (std::size_t k = 0; k < rows.size() && !size; ++k) {
-      const std::size_t i = (first + k) % rows.size();
-      if (column == std::string_view("image") && !facts.frames[i].colour) continue;
-      try {
-        size = size_of(read(column, rows[i]));
-      } catch (const Error& error) {
-        if (fault.empty()) fault = error.what();
-      }
-    }
-    return std::pair(size, fault);
-  };
-  const auto [found_depth, depth_fault] = size_by(
-      "depth", [&](const std::string& bytes) { return depth_image_size(bytes, where + ": a depth image"); });
-  if (!found_depth) throw Error(depth_fault);
-  const ImageSize depth_size = *found_depth;
-  const auto found_colour =
-      size_by("image", [&](const std::string& bytes) { return image_size(bytes, where + ": a colour image"); }).first;
-  const bool has_colour = found_colour.has_value();
-  const ImageSize colour_size = found_colour.value_or(depth_size);
-  if (camera.camera.width_px <= 0) {  // some drivers leave it out
-    camera.camera.width_px = colour_size.width_px;
-    camera.camera.height_px = colour_size.height_px;
-  }
-  require_valid(camera.camera, (where + ", camera").c_str());
-  facts.rig.depth_camera = scaled_to_depth(camera.camera, depth_size, where);
-  facts.depth_lens = camera.lens;
-  facts.camera_source = "its table Data";
-  facts.is_depth_registered = true;
+
+  const NodeImages images{database, table.rows};
+  const auto [depth_size, depth_fault] = first_size(
+      images, "depth", first, [](std::size_t) { return true; },
+      [&](const std::string& bytes) { return depth_image_size(bytes, where + ": a depth image"); });
+  if (!depth_size) throw Error(depth_fault);
+  const std::optional<ImageSize> colour_size =
+      first_size(
+          images, "image", first, [&](std::size_t i) { return facts.frames[i].colour.has_value(); },
+          [&](const std::string& bytes) { return image_size(bytes, where + ": a colour image"); })
+          .first;
+  set_cameras(camera, *depth_size, colour_size, where, facts);
   facts.depth_unit_m = kUnit_m;
-  if (has_colour) {
-    facts.rig.colour_camera = scaled_to_depth(camera.camera, colour_size, where);
-    facts.colour_lens = camera.lens;
-  }
-  facts.read_depth = [read, rows, depth_size, where](std::size_t frame, double unit_m, DepthImage& depth_m) {
-    decode_rtabmap_depth(read("depth", rows[frame]), depth_size, unit_m, where + ": a depth image", depth_m);
+  facts.read_depth = [images, size = *depth_size, where](std::size_t frame, double unit_m,
+                                                         DepthImage& depth_m) {
+    decode_rtabmap_depth(images.read("depth", frame), size, unit_m, where + ": a depth image", depth_m);
   };
-  facts.read_colour = [read, rows, where](std::size_t frame, ColourImage& image) {
-    decode_colour(read("image", rows[frame]), where + ": a colour image", image);
+  facts.read_colour = [images, where](std::size_t frame, ColourImage& image) {
+    decode_colour(images.read("image", frame), where + ": a colour image", image);
   };
   return facts;
 }

@@ -118,17 +118,8 @@ const std::regex& seven_scenes_name() {
 
 std::vector<fs::path> as_paths(const std::vector<std::string>& files) { return {files.begin(), files.end()}; }
 
-}  // namespace
-
-bool is_seven_scenes(const fs::path& folder) {
-  std::error_code ignored;
-  const std::vector<fs::path> entries = entries_of(folder, ignored);
-  return std::any_of(entries.begin(), entries.end(), [](const fs::path& file) {
-    return std::regex_match(file.filename().string(), seven_scenes_name());
-  });
-}
-
-RecordingFacts index_seven_scenes(const fs::path& folder) {
+/// Returns the files of a folder by the number of their frame.
+std::map<std::int64_t, FrameFiles> frame_files(const fs::path& folder) {
   std::map<std::int64_t, FrameFiles> by_number;
   for (const fs::path& file :
        entries_of(folder)) {  // sorted: of a jpg and a png, the same is chosen everywhere
@@ -142,12 +133,63 @@ RecordingFacts index_seven_scenes(const fs::path& folder) {
                                                     : frame.pose;
     if (slot.empty()) slot = file.string();
   }
+  return by_number;
+}
 
+bool has_colour(const FrameFiles& frame) { return !frame.colour.empty() && !frame.colour.ends_with(".none"); }
+
+/// Notes how many frames lack a file, if it is not all of them. Returns this number.
+std::int64_t note_missing(const std::map<std::int64_t, FrameFiles>& by_number, std::string FrameFiles::*file,
+                          const char* topic, const char* what, RecordingFacts& facts) {
+  const auto is_missing = [&](const auto& entry) { return (entry.second.*file).empty(); };
+  const auto missing =
+      static_cast<std::int64_t>(std::count_if(by_number.begin(), by_number.end(), is_missing));
+  const auto count = static_cast<std::int64_t>(by_number.size());
+  if (missing > 0 && missing < count) {
+    const std::int64_t first = std::find_if(by_number.begin(), by_number.end(), is_missing)->first;
+    facts.notes.push_back({topic,
+                           "the " + std::string(what) + " of " + std::to_string(missing) + " of " +
+                               std::to_string(count) + " frames is missing, the first: number " +
+                               std::to_string(first) + "; these frames are used without",
+                           missing});
+  }
+  return missing;
+}
+
+/// Sets the cameras and the depth unit that the description in `file` states.
+void set_stated_cameras(const fs::path& file, ImageSize depth, std::optional<ImageSize> colour,
+                        RecordingFacts& facts) {
+  const SequenceInfo info = read_info(file);
+  facts.rig.depth_camera = fitted_to_images(info.depth_camera, depth, file.string());
+  facts.rig.colour_camera.reset();
+  if (colour)
+    facts.rig.colour_camera = info.colour_camera
+                                  ? fitted_to_images(*info.colour_camera, *colour, file.string())
+                                  : fitted_to(facts.rig.depth_camera, *colour);
+  facts.rig.T_colour_depth = info.T_colour_depth;
+  facts.camera_origin = Origin::kRecording;
+  facts.camera_source = file.filename().string();
+  facts.depth_unit_m = 1.0 / info.units_per_m;
+  facts.unit_origin = Origin::kRecording;
+  facts.unit_source = "m_depthShift in " + file.filename().string();
+}
+
+}  // namespace
+
+bool is_seven_scenes(const fs::path& folder) {
+  std::error_code ignored;
+  const std::vector<fs::path> entries = entries_of(folder, ignored);
+  return std::any_of(entries.begin(), entries.end(), [](const fs::path& file) {
+    return std::regex_match(file.filename().string(), seven_scenes_name());
+  });
+}
+
+RecordingFacts index_seven_scenes(const fs::path& folder) {
+  const std::map<std::int64_t, FrameFiles> by_number = frame_files(folder);
   RecordingFacts facts{.name = fs::canonical(folder).string(), .has_no_clock = true};
   facts.is_written_by_many = true;
   const auto files = std::make_shared<std::vector<FrameFiles>>();
   std::vector<std::string> depths, colours;
-  std::int64_t without_colour = 0, without_pose = 0, first_without_colour = -1, first_without_pose = -1;
   for (const auto& [number, frame] : by_number) {
     StatedFrame stated{.time = {.stamp_s = static_cast<double>(number) / kNominalRate_hz}};
     if (frame.depth.empty())
@@ -155,27 +197,15 @@ RecordingFacts index_seven_scenes(const fs::path& folder) {
           folder.string() + ": the depth image of number " + std::to_string(number) + " is missing";
     else
       depths.push_back(frame.depth);
-    if (!frame.colour.empty() && !frame.colour.ends_with(".none")) {
+    if (has_colour(frame)) {
       stated.colour = files->size();
       colours.push_back(frame.colour);
     }
-    if (frame.colour.empty() && without_colour++ == 0) first_without_colour = number;
-    if (frame.pose.empty() && without_pose++ == 0) first_without_pose = number;
     facts.frames.push_back(std::move(stated));
     files->push_back(frame);
   }
-  const auto count = static_cast<std::int64_t>(files->size());
-  const auto note_missing = [&](const char* topic, const char* what, std::int64_t missing,
-                                std::int64_t first) {
-    if (missing > 0 && missing < count)
-      facts.notes.push_back({topic,
-                             "the " + std::string(what) + " of " + std::to_string(missing) + " of " +
-                                 std::to_string(count) + " frames is missing, the first: number " +
-                                 std::to_string(first) + "; these frames are used without",
-                             missing});
-  };
-  note_missing("images", "colour image", without_colour, first_without_colour);
-  note_missing("poses", "pose", without_pose, first_without_pose);
+  note_missing(by_number, &FrameFiles::colour, "images", "colour image", facts);
+  const std::int64_t without_pose = note_missing(by_number, &FrameFiles::pose, "poses", "pose", facts);
   if (depths.empty()) throw Error(facts.name + ": contains no depth images");
 
   const ImageSize size = size_of_images(as_paths(depths), folder);
@@ -185,28 +215,15 @@ RecordingFacts index_seven_scenes(const fs::path& folder) {
   facts.camera_source = nominal_name(NominalRig::kSevenScenes);
   facts.depth_unit_m = depth_unit_m(DepthEncoding::kMillimetres);
   facts.unit_source = "millimetres, by the 7-Scenes format";
-  if (const fs::path file = info_file(folder); !file.empty()) {
-    const SequenceInfo info = read_info(file);
-    facts.rig.depth_camera = fitted_to_images(info.depth_camera, size, file.string());
-    facts.rig.colour_camera.reset();
-    if (colour_size)
-      facts.rig.colour_camera = info.colour_camera
-                                    ? fitted_to_images(*info.colour_camera, *colour_size, file.string())
-                                    : fitted_to(facts.rig.depth_camera, *colour_size);
-    facts.rig.T_colour_depth = info.T_colour_depth;
-    facts.camera_origin = Origin::kRecording;
-    facts.camera_source = file.filename().string();
-    facts.depth_unit_m = 1.0 / info.units_per_m;
-    facts.unit_origin = Origin::kRecording;
-    facts.unit_source = "m_depthShift in " + file.filename().string();
-  }
+  if (const fs::path file = info_file(folder); !file.empty())
+    set_stated_cameras(file, size, colour_size, facts);
   facts.read_depth = [files](std::size_t frame, double unit_m, DepthImage& depth_m) {
     read_depth_file((*files)[frame].depth, DepthEncoding::kMillimetres, unit_m, depth_m);
   };
   facts.read_colour = [files](std::size_t frame, ColourImage& image) {
     read_colour_file((*files)[frame].colour, image);
   };
-  if (without_pose < count)
+  if (without_pose < std::ssize(*files))
     facts.read_pose = [files](std::size_t frame, double) {
       const std::string& file = (*files)[frame].pose;
       return file.empty() ? StatedPose{} : read_pose_file(file);
