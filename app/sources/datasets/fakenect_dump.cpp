@@ -38,6 +38,56 @@ void read_tilt_state(const fs::path& path, std::optional<Eigen::Vector3d>& down_
   down_camera = down_from_acceleration(Eigen::Vector3d(counts[0], counts[1], counts[2]) / kKinectCountsPerG);
 }
 
+/// Collects the frames of INDEX.txt, line by line in the order of arrival.
+class FakenectIndex {
+ public:
+  FakenectIndex(const fs::path& folder, RecordingFacts& facts) : folder_(folder), facts_(facts) {}
+
+  std::vector<std::string> depth_files{}, colour_files{};
+
+  void add(const std::string& line, const FakenectLine& parsed) {
+    if (parsed.kind == 'a') {
+      tilt_file_ = line;
+      return;
+    }
+    const double stamp_s = clock_.seconds(parsed.ticks);
+    if (parsed.kind == 'r') {
+      pairing_.add_colour(static_cast<std::int64_t>(colour_files.size()), stamp_s);
+      colour_files.push_back((folder_ / line).string());
+    } else {
+      if (!tilt_file_.empty()) read_tilt_state(folder_ / tilt_file_, down_camera_);
+      pairing_.add_depth(static_cast<std::int64_t>(facts_.frames.size()), stamp_s);
+      facts_.frames.push_back({.time = {.stamp_s = stamp_s}, .down_camera = down_camera_});
+      depth_files.push_back((folder_ / line).string());
+      if (down_camera_) facts_.gravity_source = "its accelerometer";
+    }
+    take_pairs();
+  }
+
+  /// Completes the pairs after the last line.
+  void finish() {
+    pairing_.finish();
+    take_pairs();
+  }
+
+ private:
+  const fs::path& folder_;
+  RecordingFacts& facts_;
+  std::string tilt_file_;  ///< the latest; read only if a depth image follows
+  std::optional<Eigen::Vector3d> down_camera_;
+  KinectClock clock_;
+  StampPairing pairing_{kDevicePairing};
+
+  void take_pairs() {
+    while (const auto pair = pairing_.take()) {
+      if (!pair->colour) continue;
+      StatedFrame& frame = facts_.frames[static_cast<std::size_t>(pair->depth)];
+      frame.colour = static_cast<std::size_t>(*pair->colour);
+      frame.colour_after_depth_s = pair->colour_after_depth_s;
+    }
+  }
+};
+
 }  // namespace
 
 std::optional<FakenectLine> parse_fakenect_line(std::string_view line) {
@@ -65,19 +115,7 @@ RecordingFacts index_fakenect_dump(const fs::path& folder) {
   std::istringstream lines(read_bytes(index_file, "a list of files", kMaxList_bytes));
 
   RecordingFacts facts{.name = fs::canonical(folder).string()};
-  std::vector<std::string> depth_files, colour_files;
-  std::string tilt_file;  // latest tilt file; read only if a depth image follows
-  std::optional<Eigen::Vector3d> down_camera;
-  KinectClock clock;
-  StampPairing pairing(kDevicePairing);
-  const auto take_pairs = [&] {
-    while (const auto pair = pairing.take()) {
-      if (!pair->colour) continue;
-      StatedFrame& frame = facts.frames[static_cast<std::size_t>(pair->depth)];
-      frame.colour = static_cast<std::size_t>(*pair->colour);
-      frame.colour_after_depth_s = pair->colour_after_depth_s;
-    }
-  };
+  FakenectIndex index(folder, facts);
   std::int64_t bad_lines = 0;
   std::string first_bad;
   int line_number = 0;
@@ -86,31 +124,13 @@ RecordingFacts index_fakenect_dump(const fs::path& folder) {
     if (line.ends_with('\r')) line.pop_back();
     if (line.empty()) continue;
     const auto parsed = parse_fakenect_line(line);
-    if (!parsed) {
-      if (bad_lines++ == 0)
-        first_bad = "line " + std::to_string(line_number) + ": '" + line.substr(0, 60) +
-                    "' is not of the form d-TIME-STAMP.pgm, r-TIME-STAMP.ppm or a-TIME-STAMP.dump";
-      continue;
-    }
-    if (parsed->kind == 'a') {
-      tilt_file = line;
-      continue;
-    }
-    const double stamp_s = clock.seconds(parsed->ticks);
-    if (parsed->kind == 'r') {
-      pairing.add_colour(static_cast<std::int64_t>(colour_files.size()), stamp_s);
-      colour_files.push_back((folder / line).string());
-    } else {
-      if (!tilt_file.empty()) read_tilt_state(folder / tilt_file, down_camera);
-      pairing.add_depth(static_cast<std::int64_t>(facts.frames.size()), stamp_s);
-      facts.frames.push_back({.time = {.stamp_s = stamp_s}, .down_camera = down_camera});
-      depth_files.push_back((folder / line).string());
-      if (down_camera) facts.gravity_source = "its accelerometer";
-    }
-    take_pairs();
+    if (parsed)
+      index.add(line, *parsed);
+    else if (bad_lines++ == 0)
+      first_bad = "line " + std::to_string(line_number) + ": '" + line.substr(0, 60) +
+                  "' is not of the form d-TIME-STAMP.pgm, r-TIME-STAMP.ppm or a-TIME-STAMP.dump";
   }
-  pairing.finish();
-  take_pairs();
+  index.finish();
   if (bad_lines > 0)
     facts.notes.push_back({"images",
                            std::to_string(bad_lines) +
@@ -120,6 +140,8 @@ RecordingFacts index_fakenect_dump(const fs::path& folder) {
                            bad_lines});
   if (facts.frames.empty()) return facts;
 
+  const std::vector<std::string>& depth_files = index.depth_files;
+  const std::vector<std::string>& colour_files = index.colour_files;
   const ImageSize size = size_of_images({depth_files.begin(), depth_files.end()}, folder);
   std::optional<ImageSize> colour_size;
   if (!colour_files.empty()) colour_size = size_of_images({colour_files.begin(), colour_files.end()}, folder);

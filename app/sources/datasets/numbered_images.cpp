@@ -111,6 +111,78 @@ void read_scannet_cameras(const fs::path& intrinsic, ImageSize depth, std::optio
     facts.colour_pose_origin = Origin::kAssumed;
 }
 
+/// The files of a folder of numbered images.
+struct NumberedRecording {
+  std::vector<fs::path> depths, colours;
+  std::vector<std::int64_t> numbers{};  ///< per depth image
+  std::vector<std::string> poses{};     ///< per depth image: its file; empty: none
+  bool has_pose_files = false;
+  std::int64_t without_colour = 0, first_without_colour = -1;  ///< if colour images are paired by number
+};
+
+/// Lists the files, and adds a frame per depth image. Colour images belong to the depth image with the same
+/// number. Numbers of ten digits and more are times: colour images are then paired by time.
+NumberedRecording list_numbered(const fs::path& folder, const fs::path& depth_images,
+                                const fs::path& colour_images, RecordingFacts& facts) {
+  const auto colour_files = numbered_files(colour_images, {".jpg", ".jpeg", ".png"});
+  const auto pose_files = numbered_files(folder_named(folder, {"pose", "poses"}), {".txt"});
+  const auto depth_files = numbered_files(depth_images, {".png", ".pgm"});
+  constexpr std::int64_t kLeastTime = 1'000'000'000;
+  const bool are_times = !depth_files.empty() && depth_files.begin()->first >= kLeastTime;
+  facts.has_no_clock = !are_times;
+  facts.stamps_have_no_unit = are_times;
+  NumberedRecording files;
+  files.has_pose_files = !pose_files.empty();
+  if (are_times)
+    for (const auto& [number, file] : colour_files) {
+      facts.colours.push_back({.stamp_s = static_cast<double>(number)});
+      files.colours.push_back(file);
+    }
+  for (const auto& [number, file] : depth_files) {
+    StatedFrame frame{.time = {.stamp_s = static_cast<double>(number) / (are_times ? 1.0 : kNominalRate_hz)}};
+    if (are_times) {
+      // Colour images are paired by time.
+    } else if (const auto colour = colour_files.find(number); colour != colour_files.end()) {
+      frame.colour = files.colours.size();
+      files.colours.push_back(colour->second);
+    } else if (files.without_colour++ == 0) {
+      files.first_without_colour = number;
+    }
+    const auto pose = pose_files.find(number);
+    files.poses.push_back(pose == pose_files.end() ? "" : pose->second.string());
+    files.depths.push_back(file);
+    files.numbers.push_back(number);
+    facts.frames.push_back(std::move(frame));
+  }
+  return files;
+}
+
+/// Throws Error naming the first file that looks like a depth image of another form, if there is one.
+void refuse_other_depth(const fs::path& depth_images) {
+  for (const fs::path& file : entries_of(depth_images))
+    if (file.has_extension())
+      throw Error(file.string() + ": is not read as depth; depth must be 16 bit grey images " +
+                  depth_images.filename().string() + "/NNNNN.png or .pgm, so convert them");
+}
+
+void note_missing_colour(const NumberedRecording& files, const fs::path& colour_images,
+                         RecordingFacts& facts) {
+  std::error_code ignored;
+  if (files.colours.empty() && !colour_images.empty() && !is_empty_folder(colour_images, ignored))
+    facts.notes.push_back(
+        {"images",
+         "no file in " + colour_images.filename().string() +
+             " is a .jpg or .png with the number of a depth image; depth is used without colour",
+         static_cast<std::int64_t>(files.depths.size()), "", true});
+  if (!files.colours.empty() && files.without_colour > 0)
+    facts.notes.push_back({"images",
+                           "the colour image of " + std::to_string(files.without_colour) + " of " +
+                               std::to_string(files.depths.size()) +
+                               " frames is missing, the first: number " +
+                               std::to_string(files.first_without_colour) + "; these frames are used without",
+                           files.without_colour});
+}
+
 }  // namespace
 
 bool is_numbered_images(const fs::path& folder) { return !depth_folder(folder).empty(); }
@@ -119,62 +191,15 @@ RecordingFacts index_numbered_images(const fs::path& folder) {
   RecordingFacts facts{.name = fs::canonical(folder).string(), .has_no_clock = true};
   facts.is_written_by_many = true;
   const fs::path depth_images = depth_folder(folder), colour_images = colour_folder(folder);
-  const auto colour_files = numbered_files(colour_images, {".jpg", ".jpeg", ".png"});
-  const auto pose_files = numbered_files(folder_named(folder, {"pose", "poses"}), {".txt"});
-  const auto depth_files = numbered_files(depth_images, {".png", ".pgm"});
-  // Numbers of ten digits and more are times.
-  constexpr std::int64_t kLeastTime = 1'000'000'000;
-  const bool are_times = !depth_files.empty() && depth_files.begin()->first >= kLeastTime;
-  facts.has_no_clock = !are_times;
-  facts.stamps_have_no_unit = are_times;
-  std::vector<fs::path> depths, colours;
-  std::vector<std::string> poses;
-  std::vector<std::int64_t> numbers;
-  std::int64_t without_colour = 0, first_without_colour = -1;
-  std::error_code ignored;
-  if (are_times)
-    for (const auto& [number, file] : colour_files) {
-      facts.colours.push_back({.stamp_s = static_cast<double>(number)});
-      colours.push_back(file);
-    }
-  for (const auto& [number, file] : depth_files) {
-    StatedFrame frame{.time = {.stamp_s = static_cast<double>(number) / (are_times ? 1.0 : kNominalRate_hz)}};
-    if (are_times) {
-      // Colour images are paired by time.
-    } else if (const auto colour = colour_files.find(number); colour != colour_files.end()) {
-      frame.colour = colours.size();
-      colours.push_back(colour->second);
-    } else if (without_colour++ == 0) {
-      first_without_colour = number;
-    }
-    const auto pose = pose_files.find(number);
-    poses.push_back(pose == pose_files.end() ? "" : pose->second.string());
-    depths.push_back(file);
-    numbers.push_back(number);
-    facts.frames.push_back(std::move(frame));
-  }
+  const NumberedRecording files = list_numbered(folder, depth_images, colour_images, facts);
   if (facts.frames.empty()) {
-    for (const fs::path& file : entries_of(depth_images))
-      if (file.has_extension())
-        throw Error(file.string() + ": is not read as depth; depth must be 16 bit grey images " +
-                    depth_images.filename().string() + "/NNNNN.png or .pgm, so convert them");
+    refuse_other_depth(depth_images);
     return facts;
   }
-  if (colours.empty() && !colour_images.empty() && !is_empty_folder(colour_images, ignored))
-    facts.notes.push_back(
-        {"images",
-         "no file in " + colour_images.filename().string() +
-             " is a .jpg or .png with the number of a depth image; depth is used without colour",
-         static_cast<std::int64_t>(depths.size()), "", true});
-  if (!colours.empty() && without_colour > 0)
-    facts.notes.push_back({"images",
-                           "the colour image of " + std::to_string(without_colour) + " of " +
-                               std::to_string(depths.size()) + " frames is missing, the first: number " +
-                               std::to_string(first_without_colour) + "; these frames are used without",
-                           without_colour});
+  note_missing_colour(files, colour_images, facts);
 
-  const ImageSize size = size_of_images(depths, folder);
-  const std::optional<ImageSize> colour_size = size_of_colours(colours, folder, facts);
+  const ImageSize size = size_of_images(files.depths, folder);
+  const std::optional<ImageSize> colour_size = size_of_colours(files.colours, folder, facts);
   facts.rig = nominal_rig(NominalRig::kNumbered, size, colour_size);
   facts.camera_origin = Origin::kAssumed;
   facts.camera_source = nominal_name(NominalRig::kNumbered);
@@ -183,18 +208,18 @@ RecordingFacts index_numbered_images(const fs::path& folder) {
   facts.unit_origin = Origin::kAssumed;
   if (fs::exists(folder / "intrinsic" / "intrinsic_depth.txt"))
     read_scannet_cameras(folder / "intrinsic", size, colour_size, facts);
-  facts.read_depth = [depths](std::size_t frame, double unit_m, DepthImage& depth_m) {
+  facts.read_depth = [depths = files.depths](std::size_t frame, double unit_m, DepthImage& depth_m) {
     read_depth_file(depths[frame], DepthEncoding::kMillimetres, unit_m, depth_m);
   };
-  facts.read_colour = [colours](std::size_t colour, ColourImage& image) {
+  facts.read_colour = [colours = files.colours](std::size_t colour, ColourImage& image) {
     read_colour_file(colours[colour], image);
   };
-  if (!pose_files.empty())
-    facts.read_pose = [poses](std::size_t frame, double) {
+  if (files.has_pose_files)
+    facts.read_pose = [poses = files.poses](std::size_t frame, double) {
       return poses[frame].empty() ? StatedPose{} : read_pose_file(poses[frame]);
     };
   else
-    read_listed_poses(folder, numbers, facts);
+    read_listed_poses(folder, files.numbers, facts);
   return facts;
 }
 
