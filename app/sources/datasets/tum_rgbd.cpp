@@ -9,7 +9,6 @@
 #include <optional>
 #include <set>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -89,27 +88,36 @@ std::pair<fs::path (*)(const fs::path& name), const char*> repair_of_names(const
   return {};
 }
 
-/// Reads the images of rgb.txt or depth.txt. A stamp that is not a number is unknown.
-std::vector<ListedImage> read_image_list(const fs::path& folder, const char* name, RecordingFacts& facts) {
-  struct Line {
-    ListLine cut;
-    std::string where;
-  };
-  std::vector<Line> lines;
+/// A line of a list of images, and where it is, for messages.
+struct LocatedLine {
+  ListLine cut;
+  std::string where;
+};
+
+/// Reads the lines of rgb.txt or depth.txt, without a heading. Names with backslashes get slashes.
+std::vector<LocatedLine> read_list_lines(const fs::path& folder, const char* name) {
+  std::vector<LocatedLine> lines;
   bool is_at_first = true;
-  std::vector<std::string> names;
   for_each_line(folder / name, [&](std::string_view text, const std::string& where) {
     lines.push_back({cut(text), where});
     std::string& file = lines.back().cut.name;
     std::error_code ignored;
     if (file.find('\\') != std::string::npos && !fs::exists(folder / file, ignored))
       std::replace(file.begin(), file.end(), '\\', '/');
-    const bool is_heading = std::exchange(is_at_first, false) && !parse_number(lines[0].cut.stamp) && !fs::exists(folder / file, ignored);
-    if (is_heading && !lines[0].cut.stamp.empty() && std::isalpha(static_cast<unsigned char>(lines[0].cut.stamp[0])))
-      lines.clear();
-    else
-      names.push_back(file);
+    const std::string& stamp = lines[0].cut.stamp;
+    const bool is_heading = std::exchange(is_at_first, false) && !parse_number(stamp) &&
+                            !fs::exists(folder / file, ignored) && !stamp.empty() &&
+                            std::isalpha(static_cast<unsigned char>(stamp[0]));
+    if (is_heading) lines.clear();
   });
+  return lines;
+}
+
+/// Reads the images of rgb.txt or depth.txt. A stamp that is not a number is unknown.
+std::vector<ListedImage> read_image_list(const fs::path& folder, const char* name, RecordingFacts& facts) {
+  const std::vector<LocatedLine> lines = read_list_lines(folder, name);
+  std::vector<std::string> names;
+  for (const LocatedLine& line : lines) names.push_back(line.cut.name);
   const auto [repair, what_is_repaired] = repair_of_names(folder, names);
   if (repair)
     facts.notes.push_back({"images",
@@ -202,6 +210,47 @@ std::vector<fs::path> files_of(const std::vector<ListedImage>& images) {
   return files;
 }
 
+using ListedImages = std::shared_ptr<const std::vector<ListedImage>>;
+
+/// Returns the images of a list; without the list, those of the folder, whose names are their stamps.
+ListedImages images_of(const fs::path& folder, const char* list, bool is_listed, const char* images,
+                       RecordingFacts& facts) {
+  return std::make_shared<const std::vector<ListedImage>>(
+      is_listed ? read_image_list(folder, list, facts) : images_named_by_stamps(folder / images));
+}
+
+void note_missing_list(const char* list, bool is_listed, const ListedImages& images, RecordingFacts& facts) {
+  if (!is_listed && !images->empty())
+    facts.notes.push_back(
+        {"time", std::string(list) + " is missing; the names of the images are taken as their stamps",
+         static_cast<std::int64_t>(images->size())});
+}
+
+/// Reads groundtruth.txt and accelerometer.txt, and looks poses and gravity up in them.
+void read_tracks(const fs::path& folder, const std::vector<ListedImage>& depth, RecordingFacts& facts) {
+  facts.pose_track = std::make_shared<std::vector<StampedPose>>();
+  const ListedPoses listed = read_pose_list(folder / "groundtruth.txt", std::ssize(depth), facts);
+  for (std::size_t i = 0; i < listed.poses.size(); ++i)
+    if (listed.poses[i].T_world_camera)
+      facts.pose_track->push_back(
+          {listed.are_stamped ? listed.poses[i].stamp : depth[i].stamp, *listed.poses[i].T_world_camera});
+    else
+      ++facts.lost_track_poses;
+  facts.acceleration_track = std::make_shared<std::vector<StampedAcceleration>>();
+  for (const auto& row : read_rows(folder / "accelerometer.txt", "gravity", {4}, facts))
+    facts.acceleration_track->push_back({row[0], {row[1], row[2], row[3]}});
+  if (!facts.pose_track->empty())
+    facts.read_pose = [track = facts.pose_track](std::size_t, double stamp_s) {
+      return StatedPose{pose_at(*track, stamp_s, kLongestPoseGap_s)};
+    };
+  if (!facts.acceleration_track->empty()) {
+    facts.gravity_source = "accelerometer.txt";
+    facts.read_down = [track = facts.acceleration_track](std::size_t, double stamp_s) {
+      return gravity_near(stamp_s, *track);
+    };
+  }
+}
+
 }  // namespace
 
 bool is_tum_rgbd(const fs::path& folder) {
@@ -217,19 +266,13 @@ RecordingFacts index_tum_rgbd(const fs::path& folder) {
     throw Error((folder / "depth.txt").string() + ": is missing beside rgb.txt");
   RecordingFacts facts{.name = fs::canonical(folder).string(), .stamps_have_no_unit = true};
   facts.is_written_by_many = true;
-  const auto depth = std::make_shared<const std::vector<ListedImage>>(
-      is_depth_listed ? read_image_list(folder, "depth.txt", facts) : images_named_by_stamps(folder / "depth"));
-  const auto colours = std::make_shared<const std::vector<ListedImage>>(
-      is_colour_listed ? read_image_list(folder, "rgb.txt", facts) : images_named_by_stamps(folder / "rgb"));
+  const ListedImages depth = images_of(folder, "depth.txt", is_depth_listed, "depth", facts);
+  const ListedImages colours = images_of(folder, "rgb.txt", is_colour_listed, "rgb", facts);
   if (!is_colour_listed && colours->empty() && fs::is_directory(folder / "rgb"))
     throw Error((folder / "rgb.txt").string() +
                 ": is missing, although there is a folder rgb; it lists the colour images");
-  for (const auto& [name, is_listed, images] :
-       {std::tuple("depth.txt", is_depth_listed, depth), {"rgb.txt", is_colour_listed, colours}})
-    if (!is_listed && !images->empty())
-      facts.notes.push_back({"time",
-                             std::string(name) + " is missing; the names of the images are taken as their stamps",
-                             static_cast<std::int64_t>(images->size())});
+  note_missing_list("depth.txt", is_depth_listed, depth, facts);
+  note_missing_list("rgb.txt", is_colour_listed, colours, facts);
   for (const ListedImage& image : *depth) facts.frames.push_back({.time = {.stamp_s = image.stamp}});
   for (const ListedImage& image : *colours) facts.colours.push_back({.stamp_s = image.stamp});
   // A recording by RecordingWriter keeps the pairs made from a device.
@@ -248,34 +291,13 @@ RecordingFacts index_tum_rgbd(const fs::path& folder) {
   facts.depth_unit_m = depth_unit_m(DepthEncoding::kTum);
   facts.unit_source = "1/5000 m, by the TUM RGB-D format";
 
-  facts.pose_track = std::make_shared<std::vector<StampedPose>>();
-  const ListedPoses listed = read_pose_list(folder / "groundtruth.txt", std::ssize(*depth), facts);
-  for (std::size_t i = 0; i < listed.poses.size(); ++i)
-    if (listed.poses[i].T_world_camera)
-      facts.pose_track->push_back(
-          {listed.are_stamped ? listed.poses[i].stamp : (*depth)[i].stamp, *listed.poses[i].T_world_camera});
-    else
-      ++facts.lost_track_poses;
-  facts.acceleration_track = std::make_shared<std::vector<StampedAcceleration>>();
-  for (const auto& row : read_rows(folder / "accelerometer.txt", "gravity", {4}, facts))
-    facts.acceleration_track->push_back({row[0], {row[1], row[2], row[3]}});
-
+  read_tracks(folder, *depth, facts);
   facts.read_depth = [depth](std::size_t frame, double unit_m, DepthImage& depth_m) {
     read_depth_file((*depth)[frame].file, DepthEncoding::kTum, unit_m, depth_m);
   };
   facts.read_colour = [colours](std::size_t colour, ColourImage& image) {
     read_colour_file((*colours)[colour].file, image);
   };
-  if (!facts.pose_track->empty())
-    facts.read_pose = [track = facts.pose_track](std::size_t, double stamp_s) {
-      return StatedPose{pose_at(*track, stamp_s, kLongestPoseGap_s)};
-    };
-  if (!facts.acceleration_track->empty()) {
-    facts.gravity_source = "accelerometer.txt";
-    facts.read_down = [track = facts.acceleration_track](std::size_t, double stamp_s) {
-      return gravity_near(stamp_s, *track);
-    };
-  }
   return facts;
 }
 
