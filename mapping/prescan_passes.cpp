@@ -150,6 +150,27 @@ bool restart_with_better_times(PrescanWork& work, const KeyframeDatabase* known,
   return true;
 }
 
+/// Optimises all poses after the last frame, joins the parts, and estimates the up direction.
+TrajectoryEstimate finished_trajectory(const PrescanWork& work, TrackingPass& pass) {
+  TrajectoryEstimate found;
+  found.frames = work.times.timed("optimise", [&] { return pass.odometry.optimise(); });
+  found.recorded = std::move(pass.recorded);
+  pass.counts.keyframes = pass.odometry.counts().keyframes;
+  pass.counts.loops_found = pass.odometry.counts().loops_found;
+  pass.counts.timing = pass.odometry.state().timing.current;
+  pass.counts.recorded_used = pass.odometry.state().prior.used;
+  pass.counts.recorded_contradicted = pass.odometry.state().prior.contradicted;
+  pass.counts.recorded_sigma_m = pass.odometry.state().prior.sigma_m;
+  found.keyframe_database = pass.odometry.take_keyframe_database();
+  int main_part = 0;
+  found.parts = work.times.timed("join", [&] {
+    return join_parts(found.frames, found.keyframe_database, pass.odometry.state().located, main_part);
+  });
+  const UpEstimator& up = pass.up[std::min(static_cast<std::size_t>(main_part), pass.up.size() - 1)];
+  found.up = work.config.up ? up.take(*work.config.up) : up.estimate();
+  return found;
+}
+
 /// Reads the source to its end and returns the camera pose of each frame.
 /// @param known  keyframes of the map that is extended; null: a new map
 TrajectoryEstimate estimate_trajectory(PrescanWork& work, const KeyframeDatabase* known, TrackingPass& pass) {
@@ -196,23 +217,7 @@ TrajectoryEstimate estimate_trajectory(PrescanWork& work, const KeyframeDatabase
     pass.counts.stopped_for_memory = is_full(config, 0.25 * static_cast<double>(config.max_memory_bytes));
     if (pass.counts.stopped_for_memory) break;
   }
-  TrajectoryEstimate found;
-  found.frames = work.times.timed("optimise", [&] { return pass.odometry.optimise(); });
-  found.recorded = std::move(pass.recorded);
-  pass.counts.keyframes = pass.odometry.counts().keyframes;
-  pass.counts.loops_found = pass.odometry.counts().loops_found;
-  pass.counts.timing = pass.odometry.state().timing.current;
-  pass.counts.recorded_used = pass.odometry.state().prior.used;
-  pass.counts.recorded_contradicted = pass.odometry.state().prior.contradicted;
-  pass.counts.recorded_sigma_m = pass.odometry.state().prior.sigma_m;
-  found.keyframe_database = pass.odometry.take_keyframe_database();
-  int main_part = 0;
-  found.parts = work.times.timed("join", [&] {
-    return join_parts(found.frames, found.keyframe_database, pass.odometry.state().located, main_part);
-  });
-  const UpEstimator& up = pass.up[std::min(static_cast<std::size_t>(main_part), pass.up.size() - 1)];
-  found.up = config.up ? up.take(*config.up) : up.estimate();
-  return found;
+  return finished_trajectory(work, pass);
 }
 
 /// Returns the poses of the frames that are to be fused.

@@ -51,6 +51,16 @@ Number number(std::string_view key, std::string_view value, const std::string& w
   return result;
 }
 
+/// Returns the one of `all` that is called `value`.
+template <typename Kind, std::size_t count>
+Kind one_of(const Kind (&all)[count], std::string_view key, std::string_view value,
+            const std::string& wanted) {
+  const auto* const found =
+      std::find_if(std::begin(all), std::end(all), [&](Kind kind) { return to_string(kind) == value; });
+  if (found == std::end(all)) refuse(key, value, wanted);
+  return *found;
+}
+
 void set_building_option(SimOptions& options, std::string_view key, std::string_view value) {
   if (options.room != kBuildingRoom)
     throw Error("sim: '" + std::string(key) +
@@ -67,7 +77,6 @@ void set_building_option(SimOptions& options, std::string_view key, std::string_
   }
 }
 
-// Not split: one branch per key.
 void set_option(SimOptions& options, std::string_view key, std::string_view value) {
   if (key == "seed") {
     options.seed = number<std::uint64_t>(key, value, "a whole number, 0 or more");
@@ -79,32 +88,20 @@ void set_option(SimOptions& options, std::string_view key, std::string_view valu
   } else if (key == "noise") {
     options.noise_scale = number<double>(key, value, "0 (off), 1 (a Kinect's) or another factor up to 10");
   } else if (key == "path") {
-    const auto* const found = std::find_if(std::begin(kAllPaths), std::end(kAllPaths),
-                                           [&](CameraPathKind kind) { return to_string(kind) == value; });
-    if (found == std::end(kAllPaths)) refuse(key, value, "scan, view or swing");
-    options.path = *found;
+    options.path = one_of(kAllPaths, key, value, "scan, view or swing");
   } else if (key == "moving") {
-    for (const std::string_view one : split(value, ',')) {
-      const auto* const found = std::find_if(std::begin(kAllMovers), std::end(kAllMovers),
-                                             [&](MoverKind kind) { return to_string(kind) == one; });
-      if (found == std::end(kAllMovers)) refuse(key, one, "some of hand, ball, person, with commas between");
-      options.movers.push_back(*found);
-    }
+    for (const std::string_view one : split(value, ','))
+      options.movers.push_back(
+          one_of(kAllMovers, key, one, "some of hand, ball, person, with commas between"));
   } else if (key == "crate") {
-    const auto* const found = std::find_if(std::begin(kAllCrates), std::end(kAllCrates),
-                                           [&](CrateKind kind) { return to_string(kind) == value; });
-    if (found == std::end(kAllCrates)) refuse(key, value, "0, 1, comes or goes");
-    options.crate = *found;
+    options.crate = one_of(kAllCrates, key, value, "0, 1, comes or goes");
   } else if (key == "moved") {
     options.moved = number<double>(key, value, kMovedRule);
   } else if (key == "faults") {
     if (value != "0" && value != "1") refuse(key, value, "0 or 1");
     options.faults = value == "1";
   } else if (key == "pace") {
-    const auto* const found = std::find_if(std::begin(kAllPaces), std::end(kAllPaces),
-                                           [&](Pace pace) { return to_string(pace) == value; });
-    if (found == std::end(kAllPaces)) refuse(key, value, "steady, slow, waits or leaves");
-    options.pace = *found;
+    options.pace = one_of(kAllPaces, key, value, "steady, slow, waits or leaves");
   } else if (key == "width") {
     const int width_px = number<int>(key, value, "the image's width, 64 to 1920, a multiple of 4");
     if (width_px < 64 || width_px > 1920 || width_px % 4 != 0)

@@ -35,6 +35,58 @@ Intrinsics sens_camera(const Matrix4& m, std::uint32_t width, std::uint32_t heig
   return {static_cast<int>(width), static_cast<int>(height), at(0), at(5), at(2), at(6)};
 }
 
+/// What the file states before its first frame.
+struct SensHeader {
+  std::uint64_t bytes = 0;  ///< size of the header
+  Matrix4 colour_matrix{}, colour_pose{}, depth_matrix{}, depth_pose{};
+  SensColour colour_kind{};
+  SensDepth depth_kind{};
+  std::array<std::uint32_t, 4> sizes{};  ///< colour width and height, depth width and height
+  double units_per_m = 0.0;
+  std::uint64_t frames = 0;
+};
+
+/// Throws Error naming `where` if the version or the depth's compression is not supported, or a number is
+/// impossible.
+SensHeader read_sens_header(const RandomAccessFile& file, const std::string& where) {
+  constexpr std::uint64_t kFixed_bytes = 4 * sizeof(Matrix4) + 2 * 4 + 4 * 4 + 4 + 8;
+  constexpr std::uint64_t kMaxName_bytes = 4096;
+  const std::string start = file.read(0, 12);
+  ByteReader start_reader(start, where);
+  if (start_reader.number<std::uint32_t>() != kSensVersion)
+    throw Error(where + ": has an unsupported version; must be version 4");
+  const auto name_bytes = start_reader.number<std::uint64_t>();
+  if (name_bytes > kMaxName_bytes) throw Error(where + ": is damaged: the name of its sensor is too long");
+  const std::string fixed = file.read(12 + name_bytes, kFixed_bytes);
+  ByteReader reader(fixed, where);
+  SensHeader header{.bytes = 12 + name_bytes + kFixed_bytes};
+  for (Matrix4* matrix :
+       {&header.colour_matrix, &header.colour_pose, &header.depth_matrix, &header.depth_pose})
+    *matrix = reader.number<Matrix4>();
+  header.colour_kind = static_cast<SensColour>(reader.number<std::int32_t>());
+  header.depth_kind = static_cast<SensDepth>(reader.number<std::int32_t>());
+  for (std::uint32_t& size : header.sizes) size = reader.number<std::uint32_t>();
+  header.units_per_m = static_cast<double>(reader.number<float>());
+  header.frames = reader.number<std::uint64_t>();
+  if (header.depth_kind != SensDepth::kRaw && header.depth_kind != SensDepth::kZlib)
+    throw Error(where + ": its depth compression is not supported; must be raw or zlib");
+  if (!(header.units_per_m > 0.0 && std::isfinite(header.units_per_m)))
+    throw Error(where + ": is damaged: its depth's units per m are not > 0");
+  return header;
+}
+
+/// Returns the cameras and their relative pose.
+CameraRig sens_rig(const SensHeader& header, const std::string& where) {
+  const auto& sizes = header.sizes;
+  CameraRig rig;
+  rig.depth_camera = sens_camera(header.depth_matrix, sizes[2], sizes[3], where);
+  if (sizes[0] > 0) rig.colour_camera = sens_camera(header.colour_matrix, sizes[0], sizes[1], where);
+  const auto T_device_colour = transform_of(header.colour_pose),
+             T_device_depth = transform_of(header.depth_pose);
+  if (T_device_colour && T_device_depth) rig.T_colour_depth = T_device_colour->inverse() * *T_device_depth;
+  return rig;
+}
+
 /// Positions of a frame's images in the file.
 struct SensFrame {
   std::uint64_t colour_offset = 0, colour_bytes = 0, depth_bytes = 0;
@@ -76,39 +128,11 @@ bool is_scannet_sens(const std::filesystem::path& path) {
 RecordingFacts index_scannet_sens(const std::filesystem::path& path) {
   const auto file = std::make_shared<const RandomAccessFile>(path);
   const std::string where = file->name();
-  constexpr std::uint64_t kFixed_bytes = 4 * sizeof(Matrix4) + 2 * 4 + 4 * 4 + 4 + 8;
-  constexpr std::uint64_t kMaxName_bytes = 4096;
-  const std::string start = file->read(0, 12);
-  ByteReader start_reader(start, where);
-  if (start_reader.number<std::uint32_t>() != kSensVersion)
-    throw Error(where + ": has an unsupported version; must be version 4");
-  const auto name_bytes = start_reader.number<std::uint64_t>();
-  if (name_bytes > kMaxName_bytes) throw Error(where + ": is damaged: the name of its sensor is too long");
-  const std::string head = file->read(12 + name_bytes, kFixed_bytes);
-  ByteReader reader(head, where);
-  const auto colour_matrix = reader.number<Matrix4>(), colour_pose = reader.number<Matrix4>();
-  const auto depth_matrix = reader.number<Matrix4>(), depth_pose = reader.number<Matrix4>();
-  const auto colour_kind = static_cast<SensColour>(reader.number<std::int32_t>());
-  const auto depth_kind = static_cast<SensDepth>(reader.number<std::int32_t>());
-  std::array<std::uint32_t, 4> sizes{};
-  for (std::uint32_t& size : sizes) size = reader.number<std::uint32_t>();
-  const auto units_per_m = static_cast<double>(reader.number<float>());
-  const auto count = reader.number<std::uint64_t>();
-  if (depth_kind != SensDepth::kRaw && depth_kind != SensDepth::kZlib)
-    throw Error(where + ": its depth compression is not supported; must be raw or zlib");
-  if (!(units_per_m > 0.0 && std::isfinite(units_per_m)))
-    throw Error(where + ": is damaged: its depth's units per m are not > 0");
-
+  const SensHeader header = read_sens_header(*file, where);
   RecordingFacts facts{.name = std::filesystem::canonical(path).string()};
-  facts.rig.depth_camera = sens_camera(depth_matrix, sizes[2], sizes[3], where);
-  if (sizes[0] > 0) facts.rig.colour_camera = sens_camera(colour_matrix, sizes[0], sizes[1], where);
-  const auto T_device_colour = transform_of(colour_pose), T_device_depth = transform_of(depth_pose);
-  if (T_device_colour && T_device_depth)
-    facts.rig.T_colour_depth = T_device_colour->inverse() * *T_device_depth;
-
-  const std::vector<SensFrame> places =
-      read_frames(*file, where, 12 + name_bytes + kFixed_bytes, count, facts.frames);
-
+  facts.rig = sens_rig(header, where);
+  const std::uint64_t count = header.frames;
+  const std::vector<SensFrame> places = read_frames(*file, where, header.bytes, count, facts.frames);
   if (count > places.size())
     facts.notes.push_back(
         {"images",
@@ -116,11 +140,12 @@ RecordingFacts index_scannet_sens(const std::filesystem::path& path) {
              std::to_string(places.size()),
          static_cast<std::int64_t>(std::min<std::uint64_t>(count, 1U << 30U) - places.size()), "", true});
   facts.camera_source = "its header";
-  facts.depth_unit_m = 1.0 / units_per_m;
+  facts.depth_unit_m = 1.0 / header.units_per_m;
   facts.unit_origin = Origin::kRecording;
   facts.unit_source = "its header";
   const RawLayout depth_layout{facts.rig.depth_camera.width_px, facts.rig.depth_camera.height_px};
-  facts.read_depth = [=](std::size_t frame, double unit_m, DepthImage& depth_m) {
+  facts.read_depth = [=, depth_kind = header.depth_kind](std::size_t frame, double unit_m,
+                                                         DepthImage& depth_m) {
     const SensFrame& place = places[frame];
     std::string bytes = file->read(place.colour_offset + place.colour_bytes, place.depth_bytes);
     if (depth_kind == SensDepth::kZlib)
@@ -130,8 +155,9 @@ RecordingFacts index_scannet_sens(const std::filesystem::path& path) {
                          where + ": a depth image");
     convert_depth(bytes, depth_layout, DepthPixels::kUint16, unit_m, where, depth_m);
   };
-  const RawLayout colour_layout{static_cast<int>(sizes[0] & 0xFFFFU), static_cast<int>(sizes[1] & 0xFFFFU)};
-  facts.read_colour = [=](std::size_t frame, ColourImage& image) {
+  const RawLayout colour_layout{static_cast<int>(header.sizes[0] & 0xFFFFU),
+                                static_cast<int>(header.sizes[1] & 0xFFFFU)};
+  facts.read_colour = [=, colour_kind = header.colour_kind](std::size_t frame, ColourImage& image) {
     const std::string bytes = file->read(places[frame].colour_offset, places[frame].colour_bytes);
     if (colour_kind == SensColour::kRaw)
       convert_colour(bytes, colour_layout, ColourPixels::kRgb8, where, image);

@@ -136,7 +136,9 @@ std::map<std::int64_t, FrameFiles> frame_files(const fs::path& folder) {
   return by_number;
 }
 
-bool has_colour(const FrameFiles& frame) { return !frame.colour.empty() && !frame.colour.ends_with(".none"); }
+bool has_colour_file(const FrameFiles& frame) {
+  return !frame.colour.empty() && !frame.colour.ends_with(".none");
+}
 
 /// Notes how many frames lack a file, if it is not all of them. Returns this number.
 std::int64_t note_missing(const std::map<std::int64_t, FrameFiles>& by_number, std::string FrameFiles::*file,
@@ -197,7 +199,7 @@ RecordingFacts index_seven_scenes(const fs::path& folder) {
           folder.string() + ": the depth image of number " + std::to_string(number) + " is missing";
     else
       depths.push_back(frame.depth);
-    if (has_colour(frame)) {
+    if (has_colour_file(frame)) {
       stated.colour = files->size();
       colours.push_back(frame.colour);
     }
