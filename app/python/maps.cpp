@@ -160,11 +160,7 @@ void bind_parts(py::module_& module) {
       });
 }
 
-}  // namespace
-
-// One list of bindings, so it is not split.
-void bind_maps(py::module_& module) {
-  bind_parts(module);
+void bind_map(py::module_& module) {
   py::class_<Map, MapPointer>(module, "Map",
                               "A prescanned room: octree, mesh, keyframes, trajectory. Does not change.")
       .def_property_readonly(
@@ -210,7 +206,9 @@ void bind_maps(py::module_& module) {
         return text_of("<roomradar.Map " + (map.folder.empty() ? "in memory" : map.folder) + ": " +
                        std::to_string(map.saved.mesh.triangles.size()) + " triangles>");
       });
+}
 
+void bind_map_functions(py::module_& module) {
   module.def("open_map", &open_map, py::arg("folder"), "Reads a map, and verifies its files.");
   module.def(
       "map_info", [](const std::filesystem::path& folder) { return dict_of(load_map_info(folder)); },
@@ -237,6 +235,14 @@ void bind_maps(py::module_& module) {
         return array_of(without_gil([&] { return registered(a, b); }).T_a_b);
       },
       py::arg("a"), py::arg("b"), "Returns T_a_b, (4, 4) float64, which maps points of b's world to a's.");
+}
+
+}  // namespace
+
+void bind_maps(py::module_& module) {
+  bind_parts(module);
+  bind_map(module);
+  bind_map_functions(module);
 }
 
 }  // namespace roomradar::python

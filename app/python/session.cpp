@@ -252,35 +252,9 @@ void bind_object_calls(py::class_<SessionRunner, RunnerPointer>& bound) {
       .def_property_readonly("objects", &objects_of, "ObjectState of all objects.");
 }
 
-}  // namespace
-
-// One list of bindings, so it is not split.
-void bind_session(py::module_& module) {
-  py::class_<SessionRunner, RunnerPointer> bound(
-      module, "Session",
-      "Augmented reality in a saved map, which does not change. May be called from any thread; calls wait\n"
-      "for each other. A call that raises an exception changes nothing.");
-  bind_object_calls(bound);
+/// The images and the dynamic surfaces of the last frame.
+void bind_frame_results(py::class_<SessionRunner, RunnerPointer>& bound) {
   bound
-      .def(py::init(&make_session), py::arg("map").none(false), py::kw_only(), py::arg("poses") = "auto",
-           py::arg("surfaces") = "map", py::arg("unknown") = "solid", py::arg("make_picture") = true,
-           py::arg("measure_penetration") = false, py::arg("quality") = QualityValues{},
-           "poses: auto (localised in the map, with those of frames as a prior), tracked (localised) or "
-           "recorded\n"
-           "surfaces: what objects can touch: map, or this frame's depth alone: border, skirt or holes\n"
-           "unknown: solid: objects cannot enter space that the scan has not observed; free: they can\n"
-           "quality: fields of a run's quality, such as {\"depth_stride\": 2, \"radar\": \"sampled\"}; see "
-           "`roomradar run\n"
-           "--help`")
-      .def(
-          "step",
-          [](SessionRunner& runner, const Frame& frame) {
-            return without_gil([&] { return runner.step(frame); });
-          },
-          py::arg("frame"),
-          "Processes one frame: locates the camera, finds dynamic pixels, moves the objects, composes "
-          "the picture.\n"
-          "Overwrites the arrays of picture, moved_mask and expected_depth_m.")
       .def_property_readonly(
           "picture",
           [](SessionRunner& runner) {
@@ -312,11 +286,11 @@ void bind_session(py::module_& module) {
               return std::make_shared<Mesh>(s.scene().dynamic_world().seen_world);
             });
           },
-          "Returns the dynamic surfaces, in the world. A copy.")
-      .def("query", &query_scene, py::arg("object").none(false), py::arg("T_world_object"),
-           py::arg("direction_world"), py::arg("distance_m"), py::kw_only(), py::arg("margin_m") = 0.0,
-           "Returns the Contact of a TriangleTree with everything in the room: map, dynamic surfaces, and "
-           "the session's objects.")
+          "Returns the dynamic surfaces, in the world. A copy.");
+}
+
+void bind_settings(py::class_<SessionRunner, RunnerPointer>& bound) {
+  bound
       .def(
           "set_quality",
           [](SessionRunner& runner, const QualityValues& quality) {
@@ -330,7 +304,44 @@ void bind_session(py::module_& module) {
             const SurfacePolicy policy = policy_of(surfaces);
             on(runner, [&](Session& s) { s.set_surfaces(policy); });
           },
-          py::arg("surfaces"), "map, border, skirt or holes, see Session().")
+          py::arg("surfaces"), "map, border, skirt or holes, see Session().");
+}
+
+}  // namespace
+
+void bind_session(py::module_& module) {
+  py::class_<SessionRunner, RunnerPointer> bound(
+      module, "Session",
+      "Augmented reality in a saved map, which does not change. May be called from any thread; calls wait\n"
+      "for each other. A call that raises an exception changes nothing.");
+  bind_object_calls(bound);
+  bound
+      .def(py::init(&make_session), py::arg("map").none(false), py::kw_only(), py::arg("poses") = "auto",
+           py::arg("surfaces") = "map", py::arg("unknown") = "solid", py::arg("make_picture") = true,
+           py::arg("measure_penetration") = false, py::arg("quality") = QualityValues{},
+           "poses: auto (localised in the map, with those of frames as a prior), tracked (localised) or "
+           "recorded\n"
+           "surfaces: what objects can touch: map, or this frame's depth alone: border, skirt or holes\n"
+           "unknown: solid: objects cannot enter space that the scan has not observed; free: they can\n"
+           "quality: fields of a run's quality, such as {\"depth_stride\": 2, \"radar\": \"sampled\"}; see "
+           "`roomradar run\n"
+           "--help`")
+      .def(
+          "step",
+          [](SessionRunner& runner, const Frame& frame) {
+            return without_gil([&] { return runner.step(frame); });
+          },
+          py::arg("frame"),
+          "Processes one frame: locates the camera, finds dynamic pixels, moves the objects, composes "
+          "the picture.\n"
+          "Overwrites the arrays of picture, moved_mask and expected_depth_m.");
+  bind_frame_results(bound);
+  bound.def("query", &query_scene, py::arg("object").none(false), py::arg("T_world_object"),
+            py::arg("direction_world"), py::arg("distance_m"), py::kw_only(), py::arg("margin_m") = 0.0,
+            "Returns the Contact of a TriangleTree with everything in the room: map, dynamic surfaces, and "
+            "the session's objects.");
+  bind_settings(bound);
+  bound
       .def(
           "fingerprint",
           [](SessionRunner& runner) {
