@@ -59,6 +59,21 @@ class HiddenCells {
   }
 };
 
+/// Returns the cells hidden by occupied cells of the map that are too near to give depth.
+/// @param cell_at      as for BrickProjection::for_each_nearer()
+/// @param is_occupied  callable: is cell i of the bricks occupied?
+template <typename CellAt, typename IsOccupied>
+HiddenCells hidden_by_near_surface(const DepthImage& depth_m, const BrickProjection& projection,
+                                   std::span<const CellBrick> bricks, const CellAt& cell_at,
+                                   const IsOccupied& is_occupied) {
+  HiddenCells hidden(depth_m.width, depth_m.height);
+  projection.for_each_nearer(kTooNear_m, bricks, cell_at,
+                             [&](std::size_t i, const Eigen::Vector3f&, int x, int y) {
+                               if (is_occupied(i)) hidden.hide_around(x, y);
+                             });
+  return hidden;
+}
+
 Eigen::Vector3i in_brick(std::uint16_t offset) {
   static_assert(kCellBrickEdge == 8);
   return {offset & 7, offset >> 3 & 7, offset >> 6};
@@ -130,7 +145,6 @@ GhostVotes::GhostVotes(const StaticMap& map, const GhostConfig& config)
   absence_.resize(votes_.size());
 }
 
-// Not split: the vote of a voxel uses the projection, the windows and the margins of the frame.
 void GhostVotes::look(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
   const DepthImage& depth_m = frame.depth_m;
   if (!depth_fault_of(frame).empty()) return;
@@ -143,11 +157,8 @@ void GhostVotes::look(const Frame& frame, const Eigen::Isometry3d& T_world_camer
   const auto cell_at = [this](std::size_t i) -> CellInBrick {
     return {votes_[i].offset, votes_[i].coarse != 0};
   };
-  HiddenCells hidden(depth_m.width, depth_m.height);
-  projection.for_each_nearer(kTooNear_m, bricks_, cell_at,
-                             [&](std::size_t i, const Eigen::Vector3f&, int x, int y) {
-                               if (votes_[i].occupied != 0) hidden.hide_around(x, y);
-                             });
+  const HiddenCells hidden = hidden_by_near_surface(
+      depth_m, projection, bricks_, cell_at, [this](std::size_t i) { return votes_[i].occupied != 0; });
 
   const auto vote = [&, this](std::size_t i, const Eigen::Vector3f& p_camera, int x, int y) {
     Votes& votes = votes_[i];
