@@ -24,6 +24,13 @@ struct PairBox {
 struct PendingPair {
   PairBox object, scene;
 };
+/// Order in which pairs of boxes are visited.
+enum class PairOrder {
+  kAny,  ///< last in, first out: keeps the number of pending pairs small
+  /// Smallest key first. Once a leaf has lowered the bound, pairs with keys above the bound are never opened.
+  kLeastFirst,
+};
+
 /// Pairs of boxes still to be visited: scratch memory of visit_pairs().
 struct PendingPairs {
   /// Entry of the queue, which may be a heap. Small, because a heap moves its entries often.
@@ -34,12 +41,42 @@ struct PendingPairs {
   std::vector<Entry> queue;
   std::vector<PendingPair> pairs;
   std::vector<std::uint32_t> unused;  ///< indices into `pairs`
-};
-/// Order in which pairs of boxes are visited.
-enum class PairOrder {
-  kAny,  ///< last in, first out: keeps the number of pending pairs small
-  /// Smallest key first. Once a leaf has lowered the bound, pairs with keys above the bound are never opened.
-  kLeastFirst,
+
+  void clear() {
+    queue.clear();
+    pairs.clear();
+    unused.clear();
+  }
+  /// Adds a pair.
+  template <PairOrder order>
+  void push(float key, const PairBox& object, const PairBox& scene) {
+    auto place = static_cast<std::uint32_t>(pairs.size());
+    if (unused.empty()) {
+      pairs.push_back({object, scene});
+    } else {
+      place = unused.back();
+      unused.pop_back();
+      pairs[place] = {object, scene};
+    }
+    queue.push_back({key, place});
+    if constexpr (order == PairOrder::kLeastFirst) std::push_heap(queue.begin(), queue.end(), is_later);
+  }
+  /// Removes the next entry of the queue, which must not be empty. Its pair stays until take().
+  template <PairOrder order>
+  Entry pop() {
+    if constexpr (order == PairOrder::kLeastFirst) std::pop_heap(queue.begin(), queue.end(), is_later);
+    const Entry next = queue.back();
+    queue.pop_back();
+    return next;
+  }
+  /// Removes and returns the pair of an entry.
+  PendingPair take(const Entry& entry) {
+    unused.push_back(entry.pair);
+    return pairs[entry.pair];
+  }
+
+ private:
+  static constexpr auto is_later = [](const Entry& a, const Entry& b) { return a.key > b.key; };
 };
 
 inline constexpr std::size_t kLeafTriangles = 4;  // max triangles per leaf of a TriangleTree
@@ -163,39 +200,20 @@ void visit_pairs(const TreePair& trees, PendingPairs& pending, const Key& key, c
   const Eigen::Vector3f t = trees.T_frame_object.translation().cast<float>();
   const float slack_m = 16.0F * std::numeric_limits<float>::epsilon() *
                         (t.lpNorm<Eigen::Infinity>() + object.half_size().norm() + scene.half_size().norm());
-  using Entry = PendingPairs::Entry;
-  const auto is_later = [](const Entry& a, const Entry& b) { return a.key > b.key; };
   const auto push = [&](const PairBox& o, const PairBox& s) {
     if (o.is_within_faces && s.is_within_faces) return;
     const float k = key(o, s);
-    if (!(k < kNone)) return;
-    auto place = static_cast<std::uint32_t>(pending.pairs.size());
-    if (pending.unused.empty()) {
-      pending.pairs.push_back({o, s});
-    } else {
-      place = pending.unused.back();
-      pending.unused.pop_back();
-      pending.pairs[place] = {o, s};
-    }
-    pending.queue.push_back({k, place});
-    if constexpr (order == PairOrder::kLeastFirst)
-      std::push_heap(pending.queue.begin(), pending.queue.end(), is_later);
+    if (k < kNone) pending.push<order>(k, o, s);
   };
-  pending.queue.clear();
-  pending.pairs.clear();
-  pending.unused.clear();
+  pending.clear();
   const Eigen::Vector3f slack = Eigen::Vector3f::Constant(slack_m);
   push({t, R_abs * object.half_size() + slack, 0, 0, false},
        {Eigen::Vector3f::Zero(), scene.half_size() + slack, 0, 0, false});
   float bound = kNone;
   while (!pending.queue.empty()) {
-    if constexpr (order == PairOrder::kLeastFirst)
-      std::pop_heap(pending.queue.begin(), pending.queue.end(), is_later);
-    const Entry next = pending.queue.back();
-    pending.queue.pop_back();
+    const PendingPairs::Entry next = pending.pop<order>();
     if (order == PairOrder::kLeastFirst && !(next.key < bound)) return;
-    const PendingPair pair = pending.pairs[next.pair];
-    pending.unused.push_back(next.pair);
+    const PendingPair pair = pending.take(next);
     if (pair.object.count > 0 && pair.scene.count > 0) {
       bound = leaf(pair.object, pair.scene);
       if (bound == -kNone) return;
