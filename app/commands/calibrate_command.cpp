@@ -1,5 +1,5 @@
 // calibrate_command.cpp: roomradar calibrate: cameras and depth errors from a recording of a checkerboard.
-#include "app/commands/calibrate_command.hpp"
+#include "app/commands/commands.hpp"
 
 #include <cmath>
 #include <cstdio>

@@ -1,5 +1,5 @@
 // check_command.cpp: opens a recording, reads frames spread over it, and prints the findings.
-#include "app/commands/check_command.hpp"
+#include "app/commands/commands.hpp"
 
 #include <algorithm>
 #include <chrono>

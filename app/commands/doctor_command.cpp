@@ -1,5 +1,5 @@
 // doctor_command.cpp: roomradar doctor: checks the set-up and says how to repair it.
-#include "app/commands/doctor_command.hpp"
+#include "app/commands/commands.hpp"
 
 #include <cstdio>
 

@@ -1,5 +1,5 @@
 // fallthrough_command.cpp: roomradar fallthrough: runs the same hidden-surface scenarios under each policy.
-#include "app/commands/fallthrough_command.hpp"
+#include "app/commands/commands.hpp"
 
 #include <unistd.h>
 

@@ -11,6 +11,7 @@
 #include "app/cli/interrupt.hpp"
 #include "app/cli/progress.hpp"
 #include "app/cli/report.hpp"
+#include "app/commands/commands.hpp"
 #include "app/farm/farm.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/types/system/error.hpp"

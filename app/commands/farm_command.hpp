@@ -1,4 +1,4 @@
-// farm_command.hpp: roomradar farm: runs a list of commands as jobs.
+// farm_command.hpp: jobs of roomradar farm, and of commands that split their work into jobs.
 #pragma once
 #include <functional>
 #include <map>
@@ -9,9 +9,6 @@
 #include "app/farm/farm.hpp"
 
 namespace roomradar {
-
-/// Executes the command. Returns the exit status: 1 if a job failed. Throws Error on failure.
-int run(const FarmOptions& options);
 
 /// Returns the plan of the jobs that the options name. Throws Error as plan_farm() does.
 FarmPlan plan_of(const FarmOptions& options);

@@ -1,5 +1,5 @@
 // map_command.cpp: roomradar map info|verify|export: describes, checks and exports a saved map.
-#include "app/commands/map_command.hpp"
+#include "app/commands/commands.hpp"
 
 #include <algorithm>
 #include <array>

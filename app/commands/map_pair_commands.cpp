@@ -1,5 +1,5 @@
 // map_pair_commands.cpp: roomradar map merge|diff: merges or compares two maps of one room.
-#include "app/commands/map_pair_commands.hpp"
+#include "app/commands/commands.hpp"
 
 #include <cstdio>
 #include <utility>

@@ -1,5 +1,5 @@
 // prescan_command.cpp: roomradar prescan: scans a room once and saves it as a map.
-#include "app/commands/prescan_command.hpp"
+#include "app/commands/scan_and_play.hpp"
 
 #include <unistd.h>
 

@@ -1,5 +1,5 @@
 // record_command.cpp: roomradar record: writes a source's frames as a recording.
-#include "app/commands/record_command.hpp"
+#include "app/commands/commands.hpp"
 
 #include <cstdio>
 #include <memory>

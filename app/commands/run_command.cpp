@@ -1,5 +1,5 @@
 // run_command.cpp: roomradar run: augmented reality in a saved room.
-#include "app/commands/run_command.hpp"
+#include "app/commands/scan_and_play.hpp"
 
 #include <cstdio>
 #include <memory>

@@ -6,8 +6,7 @@
 #include <optional>
 
 #include "app/cli/options/object_options.hpp"
-#include "app/commands/prescan_command.hpp"
-#include "app/commands/run_command.hpp"
+#include "app/commands/commands.hpp"
 
 namespace roomradar {
 namespace {

@@ -1,5 +1,5 @@
 // simulate_command.cpp: roomradar simulate: records a simulated Kinect, with ground truth.
-#include "app/commands/simulate_command.hpp"
+#include "app/commands/commands.hpp"
 
 #include <cstdio>
 #include <optional>

@@ -1,5 +1,5 @@
 // start_command.cpp: the start view, and the commands that it starts.
-#include "app/commands/start_command.hpp"
+#include "app/commands/commands.hpp"
 
 #include <unistd.h>
 

@@ -1,5 +1,5 @@
 // trade_command.cpp: roomradar trade: measures time against accuracy.
-#include "app/commands/trade_command.hpp"
+#include "app/commands/commands.hpp"
 
 #include <algorithm>
 #include <cstdio>

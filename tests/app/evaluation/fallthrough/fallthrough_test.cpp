@@ -8,7 +8,7 @@
 #include <sstream>
 #include <utility>
 
-#include "app/commands/fallthrough_command.hpp"
+#include "app/commands/commands.hpp"
 #include "app/commands/grid_command.hpp"
 #include "app/evaluation/fallthrough/mapped_room.hpp"
 #include "app/evaluation/fallthrough/page.hpp"

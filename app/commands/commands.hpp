@@ -1,0 +1,127 @@
+// commands.hpp: the commands of roomradar: one function per command, which executes it with its options.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/cli/options/calibrate_options.hpp"
+#include "app/cli/options/check_options.hpp"
+#include "app/cli/options/fallthrough_options.hpp"
+#include "app/cli/options/farm_options.hpp"
+#include "app/cli/options/map_options.hpp"
+#include "app/cli/options/prescan_options.hpp"
+#include "app/cli/options/recording_options.hpp"
+#include "app/cli/options/run_options.hpp"
+#include "app/cli/options/trade_options.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace roomradar {
+
+// roomradar start, or roomradar without arguments: offers maps and actions in a window.
+
+struct StartOptions {
+  /// Maps, recordings or other sources that are listed first; the last one is chosen.
+  std::vector<std::string> names;
+  /// Scale of the window's text and panes; unset: the remembered one, or the monitor's.
+  std::optional<double> ui_scale;
+};
+
+/// Adds the options with their help texts and checks.
+/// @param options  receives the values; must outlive the parsing
+void add_options(CLI::App& command, StartOptions& options);
+
+/// Shows the start view, performs the chosen action in the same window, and shows the view again, until the
+/// user closes the window. The view shows the error messages of failed actions. Returns the exit status: that
+/// of the last action if the window was closed during it, else 0.
+/// @throws Error if there is no window
+int run(const StartOptions& options);
+
+/// Does what run() does if stdin and stdout are a terminal and there is a display. Otherwise prints
+/// `first_steps` to stderr and returns 2, the exit status of wrong usage.
+int run_start_alone(const char* first_steps);
+
+// roomradar prescan and run: scans a room once and saves it as a map; augmented reality in a saved room. Both
+// alternate between scanning and playing in one window. See scan_and_play.hpp for each part.
+
+/// Scans without a window, see scan(). With options.window, scans in a window, then plays in the map and
+/// scans more of it as the user asks. Returns the exit status of the last part.
+int run(const PrescanOptions& options);
+
+/// Plays without a window, see play(). With options.window, plays in a window, then scans more of the map and
+/// plays in it as the user asks. Returns the exit status of the last part.
+int run(const RunOptions& options);
+
+// roomradar map info|verify|export: describes, checks and exports a saved map. Each function returns the exit
+// status, and throws Error if a file cannot be read or written.
+
+/// Prints the map's properties.
+int run(const MapInfoOptions& options);
+/// Compares the map's files with their checksums. Returns 1 if a file differs.
+int run(const MapVerifyOptions& options);
+/// Writes the octree, the mesh or the frontier of unknown space to a file.
+int run(const MapExportOptions& options);
+
+// roomradar map merge|diff: merges or compares two maps of one room. Both functions return the exit status 0,
+// and throw Error if a file cannot be read or written, or if the maps cannot be registered reliably.
+
+/// Adds map b to map a and saves the result as a new map.
+int run(const MapMergeOptions& options);
+/// Prints the objects that appeared or vanished between map a and map b.
+int run(const MapDiffOptions& options);
+
+// roomradar check: examines a recording.
+
+/// Prints what a recording states and what was decided about it. Reads some of its frames only. Returns the
+/// exit status: 1 if there is advice. Throws Error if the recording cannot be opened.
+int run(const CheckOptions& options);
+
+// roomradar record: writes a source's frames as a recording.
+
+/// Records the frames until the source ends or Ctrl-C is pressed. Returns the exit status 0.
+/// @throws Error if no frame can be read, or if a frame cannot be written. Frames written before it are
+///         complete
+int run(const RecordOptions& options);
+
+// roomradar calibrate: estimates intrinsics, lens distortion and depth errors from a recording of a
+// checkerboard.
+
+/// Estimates and writes the calibration, and prints residuals before and after. Returns the exit status 0.
+/// @throws Error as calibrate() does, or if a file cannot be read or written
+int run(const CalibrateOptions& options);
+
+// roomradar doctor: checks the installation and gives advice on repairs.
+
+/// Prints a line per Finding. Returns the exit status: 0, or 1 if a finding is kBad.
+int run_doctor();
+
+// roomradar simulate: records a simulated Kinect with ground truth.
+
+/// Writes the recording. Returns the exit status 0.
+/// @throws Error if an option is not valid (require_valid()), or if the folder cannot be written
+int run(const SimulateOptions& options);
+
+// roomradar fallthrough: drops objects onto hidden surfaces, with each surface policy.
+
+/// Runs the scenarios in simulated rooms, or run_grid() if a source is given. Prints a table and writes the
+/// requested files. Returns the exit status: 1 if a job of options.jobs failed, else 0.
+/// @throws Error if a room cannot be scanned or a file cannot be written. Results obtained before the error
+///         are written
+int run(const FallthroughOptions& options);
+
+// roomradar farm: runs a list of commands as jobs. See farm_command.hpp for the jobs of other commands.
+
+/// Executes the command. Returns the exit status: 1 if a job failed. Throws Error on failure.
+int run(const FarmOptions& options);
+
+// roomradar trade: measures time and accuracy of quality settings.
+
+/// Measures the settings, prints the chosen presets and writes the requested files. Ctrl-C ends the
+/// measurements; results then cover the measurements made so far. Returns the exit status: 1 if a job failed.
+/// @throws Error if a scene is not suitable, nothing was measured, or a file cannot be written. Measurements
+///         made before the error are written
+int run(const TradeOptions& options);
+
+}  // namespace roomradar
