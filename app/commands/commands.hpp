@@ -4,15 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "app/cli/options/calibrate_options.hpp"
-#include "app/cli/options/check_options.hpp"
-#include "app/cli/options/fallthrough_options.hpp"
-#include "app/cli/options/farm_options.hpp"
 #include "app/cli/options/map_options.hpp"
+#include "app/cli/options/measuring_options.hpp"
 #include "app/cli/options/prescan_options.hpp"
 #include "app/cli/options/recording_options.hpp"
 #include "app/cli/options/run_options.hpp"
-#include "app/cli/options/trade_options.hpp"
 
 namespace CLI {
 class App;

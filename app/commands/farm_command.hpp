@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/cli/options/farm_options.hpp"
+#include "app/cli/options/measuring_options.hpp"
 #include "app/farm/farm.hpp"
 
 namespace roomradar {

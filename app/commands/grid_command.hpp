@@ -1,6 +1,6 @@
 // grid_command.hpp: fall-through test in a recorded room (roomradar fallthrough with a source).
 #pragma once
-#include "app/cli/options/fallthrough_options.hpp"
+#include "app/cli/options/measuring_options.hpp"
 #include "mapping/map/map_folder.hpp"
 
 namespace roomradar {

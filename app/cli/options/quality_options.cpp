@@ -7,7 +7,7 @@
 #include <type_traits>
 
 #include "app/cli/options/option_checks.hpp"
-#include "app/cli/options/renamed_options.hpp"
+#include "app/cli/options/shared_options.hpp"
 #include "app/quality/presets.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/format_number.hpp"

@@ -1,4 +1,5 @@
-// recording_options.cpp: option names, help texts and checks of `roomradar record` and `roomradar simulate`.
+// recording_options.cpp: option names, help texts and checks of `roomradar check`, `record`, `simulate` and
+// `calibrate`.
 #include "app/cli/options/recording_options.hpp"
 
 #include <CLI/CLI.hpp>
@@ -52,6 +53,38 @@ void add_options(CLI::App& command, SimulateOptions& options) {
                    "walks A to B of the building, inclusive, each in a folder DIR/walk-NNNN, and their list\n"
                    "DIR/recordings.txt (default: one recording)");
   add_format_option(command, options.format);
+}
+
+void add_options(CLI::App& command, CheckOptions& options) {
+  command.add_option("RECORDING", options.recording, "folder or file of a recording (required)")->required();
+  command.add_flag("--json", options.json, "print all of it as JSON, for other programs (default: off)");
+  add_input_options(command, options.input);
+}
+
+void add_options(CLI::App& command, CalibrateOptions& options) {
+  add_source_argument(command, options.source);
+  command
+      .add_option("--out", options.calibration,
+                  "file to write, for --calibration of other commands (required)")
+      ->required()
+      ->type_name("FILE");
+  command
+      .add_option("--columns", options.board.columns,
+                  "inner corners along the board's longer side (default: 8)")
+      ->check(whole_within(3, 30))
+      ->type_name("N");
+  command.add_option("--rows", options.board.rows, "inner corners along the shorter side (default: 6)")
+      ->check(whole_within(3, 30))
+      ->type_name("N");
+  command.add_option("--square", options.board.square_m, "side of a square, metres (default: 0.03)")
+      ->check(within(0.001, 1.0, "metres"))
+      ->type_name("M");
+  add_frames_option(command, options.frames);
+  command
+      .add_option("--plot", options.plot,
+                  "draw the views of the board, and the errors before and after (default: not written)")
+      ->type_name("FILE.png");
+  add_report_option(command, options.report);
 }
 
 }  // namespace roomradar

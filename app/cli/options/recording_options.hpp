@@ -1,10 +1,11 @@
-// recording_options.hpp: options of the commands that write recordings: `roomradar record` and `roomradar
-// simulate`.
+// recording_options.hpp: options of the commands that read or write one recording: `roomradar check`,
+// `record`, `simulate` and `calibrate`.
 #pragma once
 #include <cstdint>
 #include <optional>
 #include <string>
 
+#include "app/calibration/board_views.hpp"
 #include "app/cli/options/input_options.hpp"
 #include "app/sources/formats/frame_range.hpp"
 #include "app/sources/recordings/recording_writer.hpp"
@@ -53,5 +54,37 @@ struct SimulateOptions {
 /// @param options  receives the values; must outlive the parsing
 void add_options(CLI::App& command, RecordOptions& options);
 void add_options(CLI::App& command, SimulateOptions& options);
+
+struct CheckOptions {
+  /// Recording, a folder or file.
+  std::string recording;
+  /// True: prints JSON.
+  bool json = false;
+  /// What the user states about the recording.
+  InputOptions input;
+};
+
+/// Adds the options with their help texts and checks.
+/// @param options  receives the values; must outlive the parsing
+void add_options(CLI::App& command, CheckOptions& options);
+
+struct CalibrateOptions {
+  /// Source of the frames, in the form that open_source() accepts.
+  std::string source;
+  /// Calibration file to write.
+  std::string calibration;
+  /// Checkerboard in the recording.
+  Board board;
+  /// Range of frames to use; unset: all.
+  std::optional<FrameRange> frames;
+  /// PNG file of calibration_plot(); empty: not written.
+  std::string plot;
+  /// JSON file to write; empty: not written.
+  std::string report;
+};
+
+/// Adds the options with their help texts and checks.
+/// @param options  receives the values; must outlive the parsing
+void add_options(CLI::App& command, CalibrateOptions& options);
 
 }  // namespace roomradar

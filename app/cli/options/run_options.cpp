@@ -5,7 +5,6 @@
 
 #include "app/cli/options/option_checks.hpp"
 #include "app/cli/options/quality_options.hpp"
-#include "app/cli/options/renamed_options.hpp"
 #include "app/cli/options/shared_options.hpp"
 
 namespace roomradar {

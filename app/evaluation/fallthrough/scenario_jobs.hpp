@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/cli/options/fallthrough_options.hpp"
+#include "app/cli/options/measuring_options.hpp"
 #include "app/evaluation/fallthrough/totals.hpp"
 
 namespace roomradar {
