@@ -1,11 +1,10 @@
 // frames.cpp: value classes of a frame; a frame's images are shared with NumPy.
-#include "app/python/frames.hpp"
-
 #include <cstdint>
 #include <memory>
 #include <string>
 
 #include "app/python/arrays.hpp"
+#include "app/python/bindings.hpp"
 #include "mapping/types/frame.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/format_number.hpp"

@@ -1,11 +1,10 @@
 // locator.cpp: localisation with the map's expected depth, rendered on a thread of its own.
-#include "app/python/locator.hpp"
-
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "app/python/arrays.hpp"
+#include "app/python/bindings.hpp"
 #include "app/python/long_calls.hpp"
 #include "app/python/maps.hpp"
 #include "app/session/frame_scene.hpp"

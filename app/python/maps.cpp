@@ -6,6 +6,7 @@
 
 #include "app/page/map_page.hpp"
 #include "app/python/arrays.hpp"
+#include "app/python/bindings.hpp"
 #include "app/python/long_calls.hpp"
 #include "mapping/map/level_surfaces.hpp"
 #include "mapping/map/map_diff.hpp"

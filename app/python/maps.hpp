@@ -1,4 +1,4 @@
-// maps.hpp: Python bindings of saved maps.
+// maps.hpp: a saved map for Python.
 #pragma once
 #include <pybind11/pybind11.h>
 
@@ -21,8 +21,5 @@ struct Map : std::enable_shared_from_this<Map> {
 /// Returns the map's octree, which shares ownership of the map. The octree is read from disk at its first
 /// use.
 std::shared_ptr<Octree> octree_of(Map& map);
-
-/// Call after bind_octree() and bind_meshes().
-void bind_maps(pybind11::module_& module);
 
 }  // namespace roomradar::python

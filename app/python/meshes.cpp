@@ -1,6 +1,4 @@
 // meshes.cpp: meshes from arrays, as arrays, from files and to files.
-#include "app/python/meshes.hpp"
-
 #include <cstring>
 #include <limits>
 #include <memory>
@@ -8,6 +6,7 @@
 #include <vector>
 
 #include "app/python/arrays.hpp"
+#include "app/python/bindings.hpp"
 #include "app/python/long_calls.hpp"
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/types/validity.hpp"

@@ -1,22 +1,10 @@
 // module.cpp: binds the exceptions, then all classes and functions in the order of their dependencies.
-#include "app/python/module.hpp"
-
 #include <exception>
 #include <string>
 #include <utility>
 
 #include "app/python/arrays.hpp"
-#include "app/python/frames.hpp"
-#include "app/python/locator.hpp"
-#include "app/python/maps.hpp"
-#include "app/python/meshes.hpp"
-#include "app/python/octree.hpp"
-#include "app/python/radar.hpp"
-#include "app/python/scan.hpp"
-#include "app/python/session.hpp"
-#include "app/python/session_values.hpp"
-#include "app/python/simulator.hpp"
-#include "app/python/sources.hpp"
+#include "app/python/bindings.hpp"
 #include "app/session/object_overlap.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/version.hpp"

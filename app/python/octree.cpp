@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/python/arrays.hpp"
+#include "app/python/bindings.hpp"
 #include "app/python/long_calls.hpp"
 #include "mapping/surface/surface_extraction.hpp"
 #include "mapping/surface/unknown/unknown_surface.hpp"

@@ -1,4 +1,4 @@
-// octree.hpp: Python bindings of the octree of occupancy and signed distance, for fusion and queries.
+// octree.hpp: the octree of occupancy and signed distance for Python, for fusion and queries.
 #pragma once
 #include <pybind11/pybind11.h>
 
@@ -47,8 +47,5 @@ class Octree {
 
 /// Returns the occupancy at points (N, 3) as uint8 (N,): the values of Occupancy.
 pybind11::object occupancy_of(const Octree& octree, const pybind11::object& points_world);
-
-/// Call after bind_meshes() and bind_frames().
-void bind_octree(pybind11::module_& module);
 
 }  // namespace roomradar::python

@@ -1,21 +1,58 @@
 // radar.cpp: queries with poses and directions from NumPy.
-#include "app/python/radar.hpp"
-
+#include <atomic>
 #include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "app/python/arrays.hpp"
+#include "app/python/bindings.hpp"
 #include "app/python/long_calls.hpp"
+#include "mapping/types/frame.hpp"
 #include "mapping/types/system/format_number.hpp"
 #include "mapping/types/validity.hpp"
 #include "radar/batch/passes_radar.hpp"
+#include "radar/exact/cyber_radar.hpp"
 #include "radar/gl/gl_context.hpp"
 #include "radar/gl/gl_thread.hpp"
 
 namespace roomradar::python {
+namespace {
+
+/// The surfaces of queries. Shares ownership of trees and frames. Rejects changes while another call reads
+/// the scene.
+class Scene {
+ public:
+  std::size_t add_tree(std::shared_ptr<TriangleTree> tree, const Eigen::Isometry3d& T_world_mesh,
+                       SurfaceKind kind);
+  void add_depth(std::shared_ptr<Frame> frame, SceneDepth depth);
+  void set_pose(std::size_t index, const Eigen::Isometry3d& T_world_mesh);
+  [[nodiscard]] std::size_t size() const { return trees_.size(); }
+  [[nodiscard]] RadarScene radar_scene() const { return {trees_, depths_, nullptr}; }
+
+  /// Guard that marks the scene as being read, for calls without the interpreter's lock.
+  class Reading {
+   public:
+    explicit Reading(Scene& scene) : readers_(scene.readers_) { ++readers_; }
+    ~Reading() { --readers_; }
+    Reading(const Reading&) = delete;
+    Reading& operator=(const Reading&) = delete;
+
+   private:
+    std::atomic<int>& readers_;
+  };
+
+ private:
+  std::vector<SceneTree> trees_;
+  std::vector<SceneDepth> depths_;
+  std::vector<std::shared_ptr<TriangleTree>> kept_trees_;
+  std::vector<std::shared_ptr<Frame>> kept_frames_;
+  std::atomic<int> readers_ = 0;
+
+  void require_unread() const;
+};
 
 std::size_t Scene::add_tree(std::shared_ptr<TriangleTree> tree, const Eigen::Isometry3d& T_world_mesh,
                             SurfaceKind kind) {
@@ -43,8 +80,6 @@ void Scene::set_pose(std::size_t index, const Eigen::Isometry3d& T_world_mesh) {
 void Scene::require_unread() const {
   if (readers_ > 0) throw Error("the scene is in use by another thread; wait for that call, or use two");
 }
-
-namespace {
 
 /// A radar, used by one call at a time. That of RadarMode::kPasses has a thread for its OpenGL context.
 class PythonRadar {

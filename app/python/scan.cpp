@@ -1,6 +1,4 @@
 // scan.cpp: the prescan of `roomradar prescan`, with progress by callback and Ctrl-C.
-#include "app/python/scan.hpp"
-
 #include <atomic>
 #include <filesystem>
 #include <memory>
@@ -12,6 +10,7 @@
 #include "app/cli/apply_scan_quality.hpp"
 #include "app/cli/open_source.hpp"
 #include "app/python/arrays.hpp"
+#include "app/python/bindings.hpp"
 #include "app/python/long_calls.hpp"
 #include "app/python/maps.hpp"
 #include "app/python/sources.hpp"

@@ -1,6 +1,4 @@
 // session.cpp: a session on a thread of its own, whose images are shared with NumPy.
-#include "app/python/session.hpp"
-
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -14,6 +12,7 @@
 #include "app/objects/object_file.hpp"
 #include "app/objects/object_model.hpp"
 #include "app/python/arrays.hpp"
+#include "app/python/bindings.hpp"
 #include "app/python/long_calls.hpp"
 #include "app/python/maps.hpp"
 #include "app/python/session_runner.hpp"

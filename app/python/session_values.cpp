@@ -2,6 +2,7 @@
 #include "app/python/session_values.hpp"
 
 #include "app/python/arrays.hpp"
+#include "app/python/bindings.hpp"
 #include "app/session/frame_result.hpp"
 #include "mapping/types/system/format_number.hpp"
 

@@ -1,4 +1,4 @@
-// session_values.hpp: Python bindings of the results of a session's frames and the states of its objects.
+// session_values.hpp: states of a session's objects, as copies for Python.
 #pragma once
 #include <pybind11/pybind11.h>
 
@@ -32,8 +32,5 @@ struct ObjectSnapshot {
   std::vector<TouchPoint> contacts;
 };
 ObjectSnapshot snapshot_of(const VirtualObject& object);
-
-/// Binds FrameResult and ObjectSnapshot. Call after bind_radar().
-void bind_session_values(pybind11::module_& module);
 
 }  // namespace roomradar::python

@@ -1,10 +1,9 @@
 // simulator.cpp: simulated frames, their truth, and recordings of them.
-#include "app/python/simulator.hpp"
-
 #include <memory>
 #include <string>
 
 #include "app/python/arrays.hpp"
+#include "app/python/bindings.hpp"
 #include "app/python/long_calls.hpp"
 #include "app/python/sources.hpp"
 #include "app/sim/room/room.hpp"

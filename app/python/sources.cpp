@@ -8,6 +8,7 @@
 
 #include "app/cli/open_source.hpp"
 #include "app/python/arrays.hpp"
+#include "app/python/bindings.hpp"
 
 namespace roomradar::python {
 

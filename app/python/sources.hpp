@@ -1,4 +1,4 @@
-// sources.hpp: Python bindings of frame sources, as iterators of frames.
+// sources.hpp: a frame source for Python, as an iterator of frames.
 #pragma once
 #include <pybind11/pybind11.h>
 
@@ -46,7 +46,5 @@ class Source {
   std::int64_t skipped_ = 0;
   std::string last_fault_;
 };
-
-void bind_sources(pybind11::module_& module);
 
 }  // namespace roomradar::python
