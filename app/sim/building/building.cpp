@@ -2,19 +2,395 @@
 #include "app/sim/building/building.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
+#include <numbers>
 #include <vector>
 
-#include "app/sim/building/building_corridor.hpp"
-#include "app/sim/building/building_stairs.hpp"
+#include "app/sim/building/building_plan.hpp"
 #include "app/sim/building/building_walk.hpp"
 #include "app/sim/building/building_walls.hpp"
 #include "app/sim/room/furniture.hpp"
+#include "app/sim/room/room.hpp"
 #include "app/sim/room/room_random.hpp"
+#include "mapping/types/system/counter_random.hpp"
 
 namespace roomradar {
 namespace {
+
+/// Returns a colour of this hue (0 to 1), saturation and value.
+Rgb hsv(double hue, double saturation, double value) {
+  const auto part = [&](double shift) {
+    const double k = std::fmod(shift + 6.0 * hue, 6.0);
+    const double of = value - value * saturation * std::clamp(std::min(k, 4.0 - k), 0.0, 1.0);
+    return static_cast<std::uint8_t>(std::lround(255.0 * of));
+  };
+  return {part(5.0), part(3.0), part(1.0)};
+}
+
+/// Returns paint in a hue drawn from `seed`. `look` seeds its texture.
+WallPaint wall_paint(std::uint64_t seed, std::uint32_t look) {
+  CounterRandom random(seed, 1);
+  const double hue = random.uniform(), strength = random.uniform(0.25, 0.6),
+               value = random.uniform(0.55, 0.85);
+  const double other = random.uniform(0.1, 0.9), warm = random.uniform();
+  constexpr std::array kDados{Pattern::kFabric, Pattern::kTiles, Pattern::kPlanks, Pattern::kStone};
+  const Pattern pattern = kDados[static_cast<std::size_t>(4.0 * random.uniform())];
+  return {{pattern, hsv(hue, strength, value), hsv(std::fmod(hue + 0.15 * other, 1.0), strength, 0.6 * value),
+           look + 500, 0.55F},
+          {Pattern::kPlaster, hsv(warm, 0.07, 0.93), hsv(hue, 0.16, 0.8), look + 600, 0.62F}};
+}
+
+/// Returns a floor covering: tiles, planks, stone or fabric.
+Material floor_covering(std::uint64_t seed, std::uint32_t look) {
+  CounterRandom random(seed, 2);
+  constexpr std::array kFloors{Pattern::kTiles, Pattern::kPlanks, Pattern::kStone, Pattern::kTiles};
+  const Pattern pattern = kFloors[static_cast<std::size_t>(4.0 * random.uniform())];
+  const double hue = random.uniform(), value = random.uniform(0.5, 0.85);
+  return {pattern, hsv(hue, 0.22, value), hsv(hue, 0.3, 0.55 * value), look, 0.55F};
+}
+
+/// Returns a saturated colour, as used for door frames.
+Material lacquer(std::uint64_t seed, std::uint32_t look) {
+  CounterRandom random(seed, 3);
+  const double hue = random.uniform(), value = random.uniform(0.45, 0.9);
+  return {Pattern::kPortable, hsv(hue, 0.65, value), hsv(hue, 0.65, 0.7 * value), look, 0.5F};
+}
+
+/// Returns a poster or landscape.
+Material picture_of(std::uint32_t look) {
+  CounterRandom random(look, 4);
+  const double hue = random.uniform(), kind = random.uniform();
+  if (kind < 0.3) return {Pattern::kLandscape, hsv(0.5 + 0.2 * hue, 0.4, 0.85), {90, 128, 60}, look, 0.6F};
+  return {Pattern::kPoster, hsv(hue, 0.15, 0.92), hsv(std::fmod(hue + 0.4, 1.0), 0.7, 0.45), look, 0.6F};
+}
+
+Material frame_of(std::uint32_t look) {
+  CounterRandom random(look, 5);
+  const double value = random.uniform(0.2, 0.8);
+  return {Pattern::kWood, hsv(0.08, 0.4, value), hsv(0.08, 0.5, 0.6 * value), look + 1, 0.5F};
+}
+
+/// Max depth of the furniture along a corridor's walls.
+constexpr double kCorridorFurniture_m = 0.45;
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+constexpr double kGap_m = 0.01;  ///< between a piece of furniture and the wall
+constexpr double kFrameWide_m = 0.08, kFrameDeep_m = 0.04;
+
+/// A stretch of a wall.
+struct Stretch {
+  double from_m = 0.0, to_m = 0.0;
+};
+
+/// A wall that is being furnished.
+struct Wall {
+  Room& room;
+  Isometry3d T_world_wall;  ///< as in add_wall()
+  CounterRandom random;
+  std::uint32_t look;
+
+  std::uint32_t next_look() { return ++look; }
+  [[nodiscard]] Isometry3d T_world_at(double x_m, double deep_m, double z_m = 0.0) const {
+    return T_world_wall * standing_at(x_m, -0.5 * deep_m - kGap_m, z_m);
+  }
+};
+
+void add_door_frame(Wall& wall, const WallOpening& door, const Material& colour) {
+  for (const double side_m : {door.from_m - 0.5 * kFrameWide_m, door.to_m + 0.5 * kFrameWide_m})
+    add(wall.room, wall.T_world_wall,
+        box({side_m, -0.5 * kFrameDeep_m, 0.5 * door.high_m}, {kFrameWide_m, kFrameDeep_m, door.high_m}),
+        colour);
+  add(wall.room, wall.T_world_wall,
+      box({0.5 * (door.from_m + door.to_m), -0.5 * kFrameDeep_m, door.high_m + 0.5 * kFrameWide_m},
+          {door.to_m - door.from_m + 2.0 * kFrameWide_m, kFrameDeep_m, kFrameWide_m}),
+      colour);
+}
+
+void add_sign(Wall& wall, double x_m) {
+  const std::uint32_t look = wall.next_look();
+  add(wall.room, wall.T_world_wall, box({x_m, -0.01, 1.62}, {0.24, 0.02, 0.2}), picture_of(look * 7 + 3));
+}
+
+void add_plant(Wall& wall, double x_m) {
+  constexpr double kWide_m = 0.42;
+  const Isometry3d T_world_pot = wall.T_world_at(x_m, kWide_m);
+  const double pot_m = wall.random.uniform(0.25, 0.45), ball_m = wall.random.uniform(0.16, 0.2);
+  const Material leaves{Pattern::kStone, {66, 122, 58}, {28, 62, 30}, wall.next_look(), 0.5F};
+  add(wall.room, T_world_pot, cylinder({0, 0, 0}, 0.16, pot_m), lacquer(wall.next_look(), wall.look));
+  add(wall.room, T_world_pot, cylinder({0, 0, pot_m}, 0.02, 0.25), frame_of(wall.look));
+  add(wall.room, T_world_pot, sphere({0, 0, pot_m + 0.25 + ball_m}, ball_m), leaves);
+  add(wall.room, T_world_pot, sphere({0, 0, pot_m + 0.25 + 2.0 * ball_m + 0.13}, 0.13), leaves);
+}
+
+void add_extinguisher(Wall& wall, double x_m) {
+  const Material red{Pattern::kPortable, {196, 30, 30}, {150, 20, 20}, wall.next_look(), 0.5F};
+  add(wall.room, wall.T_world_at(x_m, 0.16), cylinder({0, 0, 0.35}, 0.08, 0.5), red);
+  add(wall.room, wall.T_world_at(x_m, 0.1), cylinder({0, 0, 0.85}, 0.03, 0.08), frame_of(wall.look));
+}
+
+/// Adds a radiator: ribs before a plate.
+void add_radiator(Wall& wall, double x_m, double wide_m) {
+  const Material enamel{Pattern::kPortable, {228, 226, 220}, {190, 188, 182}, wall.next_look(), 0.6F};
+  add(wall.room, wall.T_world_at(x_m, 0.03), box({0, 0, 0.45}, {wide_m, 0.03, 0.6}), enamel);
+  const int ribs = static_cast<int>(wide_m / 0.12);
+  for (int i = 0; i < ribs; ++i)
+    add(wall.room, wall.T_world_at(x_m, 0.03) * standing_at((i + 0.5) * wide_m / ribs - 0.5 * wide_m, 0, 0),
+        box({0, -0.015 - 0.03, 0.45}, {0.06, 0.06, 0.56}), enamel);
+}
+
+/// Adds a thing to the stretch from x_m on and returns the width it takes; 0 if nothing that was drawn fits.
+double add_thing(Wall& wall, double x_m, double most_m) {
+  const double kind = wall.random.uniform(), wide_m = wall.random.uniform(0.5, 1.1);
+  const std::uint32_t look = wall.next_look();
+  const Material wood = frame_of(look * 11 + 5);
+  const double middle_m = x_m + 0.5 * wide_m;
+  if (kind < 0.42) {
+    if (wide_m + 0.1 > most_m) return 0.0;
+    const double high_m = wall.random.uniform(0.4, 0.8), z_m = wall.random.uniform(1.35, 1.6);
+    add_picture(wall.room, wall.T_world_wall * standing_at(middle_m + 0.05, 0, z_m), wide_m, high_m,
+                picture_of(look * 13 + 1), wood);
+    return wide_m + 0.1;
+  }
+  if (kind < 0.54) {
+    if (wide_m > most_m) return 0.0;
+    const double high_m = wall.random.uniform(0.7, 1.3);
+    add_cupboard(wall.room, wall.T_world_at(middle_m, 0.42), {wide_m, 0.37, high_m}, wood);
+    return wide_m;
+  }
+  if (kind < 0.64) {
+    if (wide_m > most_m) return 0.0;
+    add_table(wall.room, wall.T_world_at(middle_m, 0.38), {wide_m, 0.38, 0.45}, wood);
+    if (wall.random.uniform() < 0.5) add_book_pile(wall.room, wall.T_world_at(middle_m, 0.38, 0.45), 3, look);
+    return wide_m;
+  }
+  if (kind < 0.72) {
+    if (wide_m > most_m) return 0.0;
+    add_radiator(wall, middle_m, wide_m);
+    return wide_m;
+  }
+  if (kind < 0.84) {
+    if (most_m < 0.45) return 0.0;
+    add_plant(wall, x_m + 0.22);
+    return 0.44;
+  }
+  if (kind < 0.92) {
+    if (most_m < 0.3) return 0.0;
+    add_extinguisher(wall, x_m + 0.15);
+    return 0.3;
+  }
+  if (most_m < 0.4) return 0.0;
+  add(wall.room, wall.T_world_at(x_m + 0.2, 0.34), cylinder({0, 0, 0}, 0.16, 0.55), lacquer(look, look));
+  return 0.4;
+}
+
+void furnish(Wall& wall, const Stretch& stretch) {
+  constexpr double kNothingFits_m = 0.3;
+  double x_m = stretch.from_m + wall.random.uniform(0.0, 0.25);
+  while (stretch.to_m - x_m > kNothingFits_m) {
+    double wide_m = 0.0;
+    for (int attempt = 0; attempt < 4 && wide_m == 0.0; ++attempt)
+      wide_m = add_thing(wall, x_m, stretch.to_m - x_m);
+    x_m += std::max(wide_m, 0.2) + wall.random.uniform(0.15, 0.6);
+  }
+}
+
+void furnish_side(Wall& wall, const CorridorPiece& piece, unsigned side, std::vector<WallOpening> doors) {
+  constexpr double kBesideDoor_m = 0.25, kSign_m = 0.3;
+  std::sort(doors.begin(), doors.end(),
+            [](const WallOpening& a, const WallOpening& b) { return a.from_m < b.from_m; });
+  const double half_m = 0.5 * piece.interior_m.sizes()[side < 2 ? 0 : 1];
+  // Furniture on walls along y keeps off the corners, where that of the walls along x stands.
+  const double corner_m = side < 2 ? 0.05 : kCorridorFurniture_m + 0.1;
+  double from_m = -half_m + corner_m;
+  for (const WallOpening& door : doors) {
+    add_door_frame(wall, door, lacquer(wall.next_look(), wall.look));
+    furnish(wall, {from_m, door.from_m - kBesideDoor_m});
+    from_m = door.to_m + kBesideDoor_m;
+    if (half_m - corner_m - from_m > kSign_m) {
+      add_sign(wall, door.to_m + 0.25);
+      from_m += kSign_m;
+    }
+  }
+  furnish(wall, {from_m, half_m - corner_m});
+}
+
+/// Adds a piece of a corridor: its shell, a lamp, coloured frames around doorways, and pictures, boards,
+/// cupboards, benches and plants along its walls. Colours and furniture are chosen at random by the
+/// building's seed, floor and piece, the floor covering by seed and floor.
+/// @param look  seed of the materials, different for each piece
+void add_corridor_piece(Room& room, const BuildingPlan& plan, int piece, int floor, std::uint32_t look) {
+  constexpr int kPiecesPerPaint = 3;  // the paint changes along the corridor
+  const CorridorPiece& own = plan.pieces[static_cast<std::size_t>(piece)];
+  const std::uint64_t floor_seed = hash_of(plan.seed, 0x666c6f6f, static_cast<std::uint64_t>(floor));
+  const Material ceiling{Pattern::kTiles, {232, 230, 224}, {196, 194, 188}, look + 1, 0.65F};
+  const std::uint64_t paint_seed = hash_of(floor_seed, static_cast<std::uint64_t>(piece / kPiecesPerPaint));
+  add_piece_shell(room, plan, own, floor,
+                  {.ground = floor_covering(floor_seed, look + 2),
+                   .ceiling = ceiling,
+                   .walls = wall_paint(paint_seed, look + 3)});
+  for (unsigned side = 0; side < 4; ++side) {
+    std::vector<WallOpening> doors;
+    bool is_wall = true;
+    for (const PieceOpening& opening : own.openings) {
+      if (opening.side != side || !is_open_on(plan, opening, floor)) continue;
+      is_wall = is_wall && opening.leads_to != LeadsTo::kPiece;
+      doors.push_back(opening_in_side(own, opening));
+    }
+    if (!is_wall) continue;
+    Wall wall{room, T_world_side(own, side, floor),
+              CounterRandom(hash_of(floor_seed, 0x77616c6c, static_cast<std::uint64_t>(piece)), side),
+              look + 1000 * (side + 1)};
+    furnish_side(wall, own, side, std::move(doors));
+  }
+  const Eigen::Vector2d middle = own.interior_m.center();
+  room.lamps.push_back(
+      {{middle.x(), middle.y(), floor_height_m(floor) + kCorridorHeight_m - 0.2}, 1.5F, 0.2});
+}
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+constexpr double kHalfWidth_m = 0.5 * kStairwellWidth_m;
+constexpr double kFlightEnd_m = kStairwellLength_m - kLanding_m;
+constexpr double kRiser_m = kStoreyHeight_m / (2 * kRisersPerFlight);
+constexpr double kTopStorey_m = 2.8;
+
+/// Adds a box from `low` to `high` in the frame of the stairwell.
+void add_box(Room& room, const Isometry3d& T_world_stairs, const Vector3d& low, const Vector3d& high,
+             const Material& material) {
+  add(room, T_world_stairs, box(0.5 * (low + high), high - low), material);
+}
+
+/// Adds eight steps and their banister. `is_return`: the flight back, at y > 0.
+void add_flight(Room& room, const Isometry3d& T_world_stairs, double foot_m, bool is_return,
+                const Material& stone, const Material& rail) {
+  constexpr double kPost_m = 0.015, kRail_m = 0.025, kRailHigh_m = 0.92;
+  constexpr double kPostEnd_m = 0.04;  // below the rail's axis, where the post touches the inclined rail
+  const double side = is_return ? 1.0 : -1.0;
+  const double inner_m = side * 0.5 * kFlightGap_m, outer_m = side * kHalfWidth_m;
+  const double post_y = inner_m - side * kPost_m;
+  Vector3d rail_from, rail_to;
+  for (int step = 1; step < kRisersPerFlight; ++step) {
+    const double x =
+        is_return ? kFlightEnd_m - (step - 0.5) * kTread_m : kLanding_m + (step - 0.5) * kTread_m;
+    const double top_m = foot_m + step * kRiser_m, low_m = std::max(0.0, top_m - 2.0 * kRiser_m);
+    add_box(room, T_world_stairs, {x - 0.5 * kTread_m, std::min(inner_m, outer_m), low_m},
+            {x + 0.5 * kTread_m, std::max(inner_m, outer_m), top_m}, stone);
+    const double post_end_m = top_m + kRailHigh_m - kPostEnd_m;
+    add(room, T_world_stairs, cylinder({x, post_y, low_m}, kPost_m, post_end_m - low_m), rail);
+    rail_to = Vector3d(x, post_y, top_m + kRailHigh_m);
+    if (step == 1) rail_from = rail_to;
+  }
+  add(room, T_world_stairs, capsule(rail_from, rail_to, kRail_m), rail);
+}
+
+void add_walls(Room& room, const Isometry3d& T_world_stairs, int storey, double height_m, bool is_top,
+               const WallPaint& paint) {
+  const Isometry3d T_world_storey = T_world_stairs * standing_at(0, 0, floor_height_m(storey));
+  const double front_m =
+      is_top ? height_m : height_m - kShellThickness_m;  // below the landing that ends above it
+  const auto own = [&paint](unsigned side) {
+    WallPaint result = paint;
+    result.dado.seed += 40 * side;
+    result.upper.seed += 40 * side;
+    return result;
+  };
+  constexpr double kQuarter_rad = 0.5 * std::numbers::pi;
+  add_wall(room, T_world_storey * standing_at(0, 0, 0, kQuarter_rad), {-kHalfWidth_m, kHalfWidth_m, front_m},
+           {{-0.5 * kStairDoorWidth_m, 0.5 * kStairDoorWidth_m, kDoorwayHeight_m}}, own(1));
+  add_wall(room, T_world_storey * standing_at(kStairwellLength_m, 0, 0, -kQuarter_rad),
+           {-kHalfWidth_m, kHalfWidth_m, height_m}, {}, own(2));
+  add_wall(room, T_world_storey * standing_at(0, kHalfWidth_m, 0),
+           {-kShellThickness_m, kStairwellLength_m + kShellThickness_m, height_m}, {}, own(3));
+  add_wall(room, T_world_storey * standing_at(0, -kHalfWidth_m, 0, std::numbers::pi),
+           {-kStairwellLength_m - kShellThickness_m, kShellThickness_m, height_m}, {}, own(4));
+}
+
+/// Adds pictures beside a storey's flights and landings, lower than eyes, as the camera looks down.
+void add_pictures(Room& room, const Isometry3d& T_world_stairs, double floor_m, bool is_top,
+                  std::uint32_t look) {
+  constexpr double kEye_m = 1.2, kHalfStorey_m = 0.5 * kStoreyHeight_m, kHalfTurn_rad = std::numbers::pi;
+  const auto hang = [&](const Isometry3d& T_stairs_picture, double width_m, double height_m,
+                        std::uint32_t number) {
+    add_picture(room, T_world_stairs * T_stairs_picture, width_m, height_m, picture_of(look + number),
+                frame_of(look + number));
+  };
+  const auto hang_at_sides = [&](double x, double right_z, double left_z, std::uint32_t number) {
+    hang(standing_at(x, -kHalfWidth_m, right_z, kHalfTurn_rad), 0.7, 0.5, number);
+    hang(standing_at(x, kHalfWidth_m, left_z), 0.7, 0.5, number + 1);
+  };
+  hang_at_sides(0.5 * kLanding_m, floor_m + kEye_m, floor_m + kEye_m, 0);
+  if (is_top) return;
+  hang_at_sides(kStairwellLength_m - 0.5 * kLanding_m, floor_m + kHalfStorey_m + kEye_m,
+                floor_m + kHalfStorey_m + kEye_m, 2);
+  for (const double aside_m : {-0.9, 0.9}) {
+    const std::uint32_t number = aside_m > 0.0 ? 7 : 4;
+    const double risen_m = 0.5 * kHalfStorey_m + aside_m * kRiser_m / kTread_m;
+    hang_at_sides(0.5 * kStairwellLength_m + aside_m, floor_m + risen_m + kEye_m,
+                  floor_m + kStoreyHeight_m - risen_m + kEye_m, number);
+    hang(standing_at(kStairwellLength_m, 0.7 * aside_m, floor_m + kHalfStorey_m + 1.15,
+                     -0.5 * std::numbers::pi),
+         0.9, 0.8, number + 2);
+  }
+}
+
+/// Height of the stairwell's ceiling above the world's origin.
+double stairwell_top_m(const BuildingPlan& plan) {
+  return floor_height_m(plan.size.floors - 1) + kTopStorey_m;
+}
+
+/// Adds a stairwell over all floors, with its lamps and pictures.
+/// @param look  seed of its materials
+void add_stairwell(Room& room, const BuildingPlan& plan, const PlannedStairs& stairs, std::uint32_t look) {
+  const Isometry3d& T_world_stairs = stairs.T_world_stairs;
+  const Material stone{Pattern::kStone, {176, 172, 164}, {104, 100, 96}, look + 1, 0.55F};
+  const Material rail{Pattern::kWood, {150, 96, 54}, {96, 58, 30}, look + 2, 0.5F};
+  const Material ceiling{Pattern::kPlaster, {226, 224, 218}, {198, 196, 190}, look + 3, 0.65F};
+  add_box(room, T_world_stairs, {-kShellThickness_m, -kHalfWidth_m - kShellThickness_m, -kShellThickness_m},
+          {kStairwellLength_m + kShellThickness_m, kHalfWidth_m + kShellThickness_m, 0.0}, stone);
+  const double top_m = stairwell_top_m(plan);
+  add_box(
+      room, T_world_stairs, {-kShellThickness_m, -kHalfWidth_m - kShellThickness_m, top_m},
+      {kStairwellLength_m + kShellThickness_m, kHalfWidth_m + kShellThickness_m, top_m + kShellThickness_m},
+      ceiling);
+  for (int storey = 0; storey < plan.size.floors; ++storey) {
+    const bool is_top = storey + 1 == plan.size.floors;
+    const double floor_m = floor_height_m(storey);
+    const std::uint32_t own_look = look + 1000 * static_cast<std::uint32_t>(storey + 1);
+    add_walls(room, T_world_stairs, storey, is_top ? kTopStorey_m : kStoreyHeight_m, is_top,
+              wall_paint(hash_of(plan.seed, 0x73746169, own_look), own_look));
+    room.lamps.push_back({T_world_stairs * Vector3d(0.5 * kLanding_m, 0, floor_m + 2.5), 1.0F, 0.2});
+    if (storey > 0) {  // a landing, and the doorway's floor between the walls above and below
+      add_box(room, T_world_stairs, {0.0, -kHalfWidth_m, floor_m - 0.2}, {kLanding_m, kHalfWidth_m, floor_m},
+              stone);
+      add_box(room, T_world_stairs, {-kShellThickness_m, -kHalfWidth_m, floor_m - kShellThickness_m},
+              {0.0, kHalfWidth_m, floor_m}, stone);
+    }
+    add_pictures(room, T_world_stairs, floor_m, is_top, own_look);
+    // Beside the door.
+    const Isometry3d T_stairs_sign =
+        standing_at(0, 0.5 * (0.5 * kStairDoorWidth_m + kHalfWidth_m), floor_m + 1.6, 0.5 * std::numbers::pi);
+    add_picture(room, T_world_stairs * T_stairs_sign, 0.4, 0.5, picture_of(own_look + 9),
+                frame_of(own_look + 9));
+    if (is_top) {
+      add_box(room, T_world_stairs, {kLanding_m - 0.06, -kHalfWidth_m, floor_m},
+              {kLanding_m, -0.5 * kFlightGap_m, floor_m + 1.0}, rail);
+      continue;
+    }
+    const double half_m = floor_m + 0.5 * kStoreyHeight_m;
+    add_flight(room, T_world_stairs, floor_m, false, stone, rail);
+    add_flight(room, T_world_stairs, half_m, true, stone, rail);
+    add_box(room, T_world_stairs, {kFlightEnd_m, -kHalfWidth_m, half_m - 0.2},
+            {kStairwellLength_m, kHalfWidth_m, half_m}, stone);
+    room.lamps.push_back(
+        {T_world_stairs * Vector3d(kStairwellLength_m - 0.5 * kLanding_m, 0, half_m + 2.3), 1.2F, 0.2});
+  }
+}
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
@@ -63,10 +439,10 @@ Eigen::AlignedBox3d bounds_of_piece(const CorridorPiece& piece, int floor) {
 }
 
 Eigen::AlignedBox3d bounds_of_stairs(const BuildingPlan& plan, const PlannedStairs& stairs) {
-  constexpr double kHalfWidth_m = 0.5 * kStairwellWidth_m + kShellThickness_m;
+  constexpr double kOuterHalf_m = 0.5 * kStairwellWidth_m + kShellThickness_m;
   Eigen::AlignedBox3d bounds;
-  bounds.extend(stairs.T_world_stairs * Vector3d(-kShellThickness_m, -kHalfWidth_m, -kShellThickness_m));
-  bounds.extend(stairs.T_world_stairs * Vector3d(kStairwellLength_m + kShellThickness_m, kHalfWidth_m,
+  bounds.extend(stairs.T_world_stairs * Vector3d(-kShellThickness_m, -kOuterHalf_m, -kShellThickness_m));
+  bounds.extend(stairs.T_world_stairs * Vector3d(kStairwellLength_m + kShellThickness_m, kOuterHalf_m,
                                                  stairwell_top_m(plan) + kShellThickness_m));
   return bounds;
 }

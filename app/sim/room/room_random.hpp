@@ -1,4 +1,4 @@
-// room_random.hpp: a room of random size and furniture.
+// room_random.hpp: a room of random size and furniture, and a flat of such rooms.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -21,5 +21,9 @@ struct RandomRoomShape {
 /// Makes a room with a random arrangement of furniture, determined by the seed. The room's middle is at x = y
 /// = 0. The floor in front of doorways is free.
 Room make_random_room(std::uint64_t seed, const RandomRoomShape& shape = {});
+
+/// Makes random rooms in a ring, with a doorway between each pair of neighbours. The walk goes along most of
+/// an ellipse in each room, facing its middle, and through the doorways.
+Room make_flat(std::uint64_t seed);
 
 }  // namespace roomradar
