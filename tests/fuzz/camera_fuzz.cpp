@@ -1,6 +1,6 @@
 // camera_fuzz.cpp: camera.json, camera-intrinsics.txt, calibration.json and map.json, by the first byte.
 #include "app/calibration/calibration.hpp"
-#include "app/sources/datasets/seven_scenes.hpp"
+#include "app/sources/datasets/dataset_readers.hpp"
 #include "app/sources/decisions/camera_choice.hpp"
 #include "app/sources/formats/camera_rig.hpp"
 #include "mapping/map/map_info_json.hpp"

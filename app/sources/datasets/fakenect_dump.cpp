@@ -1,5 +1,5 @@
 // fakenect_dump.cpp: reads INDEX.txt and pairs its images like a live device's.
-#include "app/sources/datasets/fakenect_dump.hpp"
+#include "app/sources/datasets/dataset_readers.hpp"
 
 #include <array>
 #include <cmath>

@@ -1,5 +1,5 @@
 // klg.cpp: lists the frames by adding up their sizes.
-#include "app/sources/datasets/klg.hpp"
+#include "app/sources/datasets/dataset_readers.hpp"
 
 #include <memory>
 

@@ -1,5 +1,5 @@
 // numbered_images.cpp: images, poses and matrices by the number in their names.
-#include "app/sources/datasets/numbered_images.hpp"
+#include "app/sources/datasets/dataset_readers.hpp"
 
 #include <algorithm>
 #include <map>
@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "app/sources/datasets/numbered_files.hpp"
-#include "app/sources/datasets/seven_scenes.hpp"
 #include "app/sources/datasets/text_lists.hpp"
 #include "app/sources/formats/image_file.hpp"
 #include "app/sources/formats/nominal_rig.hpp"

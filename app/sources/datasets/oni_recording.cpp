@@ -1,5 +1,5 @@
 // oni_facts.cpp: nodes of a .oni file as depth and colour.
-#include "app/sources/datasets/oni_recording.hpp"
+#include "app/sources/datasets/dataset_readers.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // record3d.cpp: metadata, numbered images, and ARKit's axes.
-#include "app/sources/datasets/record3d.hpp"
+#include "app/sources/datasets/dataset_readers.hpp"
 
 #include <cmath>
 #include <cstdint>

@@ -1,5 +1,5 @@
 // redwood.cpp: numbered images with trajectories as text.
-#include "app/sources/datasets/redwood.hpp"
+#include "app/sources/datasets/dataset_readers.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,6 @@
 #include <string>
 
 #include "app/sources/datasets/numbered_files.hpp"
-#include "app/sources/datasets/seven_scenes.hpp"
 #include "app/sources/formats/camera_rig_json.hpp"
 #include "app/sources/formats/image_file.hpp"
 #include "app/sources/formats/parse_numbers.hpp"

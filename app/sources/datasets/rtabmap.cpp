@@ -1,5 +1,5 @@
 // rtabmap.cpp: reads the database's tables, and RTAB-Map's binary format of cameras.
-#include "app/sources/datasets/rtabmap.hpp"
+#include "app/sources/datasets/dataset_readers.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // scannet_sens.cpp: lists the frames by adding up their sizes.
-#include "app/sources/datasets/scannet_sens.hpp"
+#include "app/sources/datasets/dataset_readers.hpp"
 
 #include <algorithm>
 #include <array>

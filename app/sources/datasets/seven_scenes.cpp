@@ -1,5 +1,5 @@
 // seven_scenes.cpp: lists frame-XXXXXX.* and reads pose files.
-#include "app/sources/datasets/seven_scenes.hpp"
+#include "app/sources/datasets/dataset_readers.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // stray_scanner.cpp: comma-separated lists, numbered images and a video.
-#include "app/sources/datasets/stray_scanner.hpp"
+#include "app/sources/datasets/dataset_readers.hpp"
 
 #include <algorithm>
 #include <cmath>

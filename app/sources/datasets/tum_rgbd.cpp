@@ -1,5 +1,5 @@
 // tum_rgbd.cpp: reads lists of images, poses and accelerations, each with stamps.
-#include "app/sources/datasets/tum_rgbd.hpp"
+#include "app/sources/datasets/dataset_readers.hpp"
 
 #include <algorithm>
 #include <array>
@@ -29,7 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kLongestPoseGap_s = 0.050;  // a hand-held camera's path is not straight for longer
-constexpr double kGravityWithin_s = 0.050;
+constexpr double kReadingWithin_s = 0.050;
 
 struct ListedImage {
   double stamp = kNoStamp;
@@ -199,7 +199,7 @@ std::optional<Eigen::Vector3d> gravity_near(double stamp_s,
   if (after != readings.begin() &&
       (after == readings.end() || stamp_s - (after - 1)->stamp_s < after->stamp_s - stamp_s))
     nearest = after - 1;
-  if (nearest == readings.end() || std::abs(nearest->stamp_s - stamp_s) > kGravityWithin_s)
+  if (nearest == readings.end() || std::abs(nearest->stamp_s - stamp_s) > kReadingWithin_s)
     return std::nullopt;
   return down_from_acceleration(nearest->acceleration_m_s2 / kStandardGravity_m_s2);
 }

@@ -7,7 +7,7 @@
 #include <system_error>
 #include <vector>
 
-#include "app/sources/datasets/fakenect_dump.hpp"
+#include "app/sources/datasets/dataset_readers.hpp"
 #include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstring>
 
-#include "app/sources/datasets/ros_recording.hpp"
+#include "app/sources/datasets/dataset_readers.hpp"
 #include "app/sources/formats/kinect_units.hpp"
 
 namespace roomradar {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "app/sources/datasets/seven_scenes.hpp"
+#include "app/sources/datasets/dataset_readers.hpp"
 #include "tests/support/forked_program.hpp"
 #include "tests/support/recordings.hpp"
 #include "tests/support/temporary_folder.hpp"
