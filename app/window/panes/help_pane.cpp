@@ -1,5 +1,5 @@
 // help_pane.cpp: draws the list of keys over a dimmed window.
-#include "app/window/panes/help_pane.hpp"
+#include "app/window/panes/panes.hpp"
 
 #include <imgui.h>
 

@@ -1,5 +1,5 @@
 // model_view.cpp: the meshes of a session, in a 3D view.
-#include "app/window/panes/model_view.hpp"
+#include "app/window/panes/panes.hpp"
 
 #include <algorithm>
 #include <array>

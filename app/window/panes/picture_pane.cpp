@@ -1,5 +1,5 @@
 // picture_pane.cpp: shows the picture, marks the chosen object, and turns mouse actions into commands.
-#include "app/window/panes/picture_pane.hpp"
+#include "app/window/panes/panes.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // run_state.cpp: draws the state as a coloured word, and the frame time as a bar.
-#include "app/window/panes/run_state.hpp"
+#include "app/window/panes/panes.hpp"
 
 #include <imgui.h>
 

@@ -1,5 +1,5 @@
 // side_panel.cpp: draws the panel at the right.
-#include "app/window/panes/side_panel.hpp"
+#include "app/window/panes/panes.hpp"
 
 #include <algorithm>
 #include <array>

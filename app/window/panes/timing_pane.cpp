@@ -1,5 +1,5 @@
 // timing_pane.cpp: draws a column per frame, with a colour per stage.
-#include "app/window/panes/timing_pane.hpp"
+#include "app/window/panes/panes.hpp"
 
 #include <algorithm>
 #include <cstdio>

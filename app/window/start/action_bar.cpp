@@ -1,5 +1,5 @@
 // action_bar.cpp: one table of actions for buttons and keys.
-#include "app/window/start/action_bar.hpp"
+#include "app/window/start/start_panes.hpp"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>

@@ -1,5 +1,5 @@
 // start_dialog.cpp: draws the dialogs and interprets their keys.
-#include "app/window/start/start_dialog.hpp"
+#include "app/window/start/start_panes.hpp"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>

@@ -1,5 +1,5 @@
 // start_lists.cpp: rows of two lines; the chosen row of the active list is highlighted.
-#include "app/window/start/start_lists.hpp"
+#include "app/window/start/start_panes.hpp"
 
 #include <imgui.h>
 
