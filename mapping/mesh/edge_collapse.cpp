@@ -1,20 +1,99 @@
 // edge_collapse.cpp: candidate queue by quadric error, and the tests that accept or reject a collapse.
 #include "mapping/mesh/edge_collapse.hpp"
 
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <utility>
+#include <vector>
 
-#include "mapping/mesh/collapse_queue.hpp"
-#include "mapping/mesh/merged_vertex.hpp"
 #include "mapping/mesh/quadric.hpp"
 #include "mapping/mesh/triangle_distance.hpp"
 
 namespace roomradar {
 namespace {
+
+/// Index that stands for "no vertex", "no triangle" or "no corner of a triangle".
+constexpr std::uint32_t kNoIndex = ~std::uint32_t{0};
+
+struct MergedVertex {
+  Quadric quadric;
+  Eigen::Vector3f normal_sum = Eigen::Vector3f::Zero();
+  Eigen::Vector3f colour_sum = Eigen::Vector3f::Zero();
+  std::uint32_t count = 0;
+  std::uint32_t version = 0;  ///< incremented by every collapse; kNoIndex: vertex removed
+  float tolerance_m = 0.0F;   ///< minimum over the merged vertices; 0: constrained
+  bool on_border = false;
+
+  /// Merges another vertex into this one.
+  /// @param both  sum of both quadrics
+  void absorb(MergedVertex& from, const Quadric& both) {
+    quadric = both;
+    normal_sum += from.normal_sum;
+    colour_sum += from.colour_sum;
+    count += from.count;
+    on_border |= from.on_border;
+    ++version;
+    from.version = kNoIndex;
+    tolerance_m = std::min(tolerance_m, from.tolerance_m);
+  }
+};
+
+/// Singly linked lists of indices. An index is in at most one list.
+struct IndexLists {
+  IndexLists(std::size_t lists, std::size_t indices) : first(lists, kNoIndex), next(indices, kNoIndex) {}
+  void push_front(std::uint32_t list, std::uint32_t index) {
+    next[index] = first[list];
+    first[list] = index;
+  }
+  std::vector<std::uint32_t> first;  ///< per list; kNoIndex: empty
+  std::vector<std::uint32_t> next;   ///< per index; kNoIndex: last of its list
+};
+
+/// An edge to collapse, with the versions of its vertices at the time the cost was computed.
+struct Candidate {
+  float cost = 0.0F;
+  std::uint32_t kept = 0;
+  std::uint32_t gone = 0;
+  std::uint32_t kept_version = 0;
+  std::uint32_t gone_version = 0;
+};
+
+/// Bucket queue. Pops candidates in order of cost, rounded to four steps per factor of two. Candidates of
+/// equal rounded cost are popped first in, first out, so flat areas thin out evenly. A heap would take longer
+/// than all other work of the simplification.
+class CandidateQueue {
+ public:
+  void push(const Candidate& candidate) {
+    const std::size_t bucket = std::bit_cast<std::uint32_t>(candidate.cost) >> 21U;  // cost >= 0
+    buckets_[bucket].waiting.push_back(candidate);
+    cheapest_ = std::min(cheapest_, bucket);
+  }
+  bool pop(Candidate& candidate) {
+    for (; cheapest_ < buckets_.size(); ++cheapest_) {
+      Bucket& bucket = buckets_[cheapest_];
+      if (bucket.taken < bucket.waiting.size()) {
+        candidate = bucket.waiting[bucket.taken++];
+        return true;
+      }
+      bucket = Bucket{};
+    }
+    return false;
+  }
+
+ private:
+  struct Bucket {
+    std::vector<Candidate> waiting;
+    std::size_t taken = 0;
+  };
+  std::array<Bucket, 1024> buckets_;
+  std::size_t cheapest_ = 0;
+};
 
 constexpr float kThinnest_m = 1e-4F;  // min height of a new triangle
 constexpr float kLarge = 12.0F;       // a triangle with a side above this many tolerances counts as large

@@ -4,15 +4,279 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <span>
 #include <vector>
 
-#include "mapping/octree/leaf_update.hpp"
+#include "mapping/octree/block_octree.hpp"
+#include "mapping/octree/cell_levels.hpp"
 #include "mapping/octree/node_visibility.hpp"
+#include "mapping/types/depth_noise.hpp"
+#include "mapping/types/frame.hpp"
+#include "mapping/types/simd8f.hpp"
 #include "mapping/types/system/parallel_for.hpp"
 
 namespace roomradar {
 namespace {
+
+/// Returns the weight of a measurement: kUnitWeightSigma_m squared divided by the measurement's variance, at
+/// most 1.
+inline float weight_at(const DepthNoise& noise, float depth_m) {
+  const float ratio = kUnitWeightSigma_m / depth_sigma_m(noise, depth_m);
+  return std::min(ratio * ratio, 1.0F);
+}
+
+/// Edge of the cells that an update changes.
+enum class CellSize { kVoxel, kCoarse };
+
+/// Measurements of eight cells, each from the pixel to which the cell's centre projects.
+template <typename Float8>
+struct Observed {
+  EightPoints<Float8> p_camera;  ///< centres of the cells, m
+  Float8 distance_m;             ///< measured depth minus depth of the cell's centre
+  Float8 sigma_m;                ///< standard deviation of the measured depth
+  unsigned free = 0;             ///< bit i: the frame sees through the centre of cell i
+  unsigned sampled = 0;          ///< bit i: the centre of cell i is within the truncation band
+};
+
+/// Updates leaf blocks of one cell size with one frame. The sample of a cell is its signed distance, weight
+/// and colour.
+template <typename Float8>
+class LeafUpdate {
+ public:
+  LeafUpdate(BlockOctree& tree, const Frame& frame, const FusionConfig& config, CellSize size)
+      : tree_(tree),
+        frame_(frame),
+        config_(config),
+        size_(size),
+        cell_m_(static_cast<float>(tree.resolution_m()) * (size == CellSize::kCoarse ? 2.0F : 1.0F)),
+        camera_(frame.depth_camera),
+        colour_camera_(frame.colour_camera),
+        T_colour_depth_(frame.T_colour_depth.cast<float>().matrix()),
+        truncation_m_(config.truncation_voxels * cell_m_),
+        colour_distance_m_(kColourCells * cell_m_),
+        behind_(-kBehind_cells * cell_m_ / tree.units().distance_m),
+        log_odds_{in_steps(config.hit_log_odds), in_steps(config.miss_log_odds),
+                  in_steps(config.min_log_odds), in_steps(config.max_log_odds)} {
+    const ColourImage& colour = frame.colour;
+    has_colour_ = !colour.empty() && colour.width == frame.colour_camera.width_px &&
+                  colour.height == frame.colour_camera.height_px;
+  }
+
+  /// Returns a free cube at the minimum log-odds; further misses do not change it.
+  [[nodiscard]] Slot saturated_free() const { return Slot::cube(static_cast<LogOdds>(log_odds_.min)); }
+  /// Returns the cube's state after one miss.
+  [[nodiscard]] Slot missed(Slot cube) const {
+    const float after = std::max(static_cast<float>(cube.log_odds()) + log_odds_.miss, log_odds_.min);
+    return Slot::cube(static_cast<LogOdds>(after == 0.0F ? 1.0F : after));
+  }
+
+  /// Looks up the pixel to which each point projects. Pixels without depth set no bits.
+  [[nodiscard]] Observed<Float8> observe(const EightPoints<Float8>& p_camera) const {
+    const Float8 inverse_z = Float8(1.0F) / p_camera.z;
+    const Float8 u = floor(p_camera.x * camera_.fx * inverse_z + (camera_.cx + 0.5F));
+    const Float8 v = floor(p_camera.y * camera_.fy * inverse_z + (camera_.cy + 0.5F));
+    const auto seen = (Float8(kNearest_m) < p_camera.z) & (Float8(0.0F) <= u) & (u < camera_.width) &
+                      (Float8(0.0F) <= v) & (v < camera_.height);
+    const Float8 depth_m = Float8::gather(frame_.depth_m.pixels.data(), v * camera_.width + u, seen);
+    const auto measured = Float8(kLeastDepth_m) <= depth_m;
+    const Float8 distance_m = depth_m - p_camera.z;
+    const Float8 sigma_m = depth_sigmas_m(config_.noise, depth_m);
+    const auto free = measured & (p_camera.z < min(depth_m, config_.max_range_m));
+    const auto sampled = measured & (depth_m <= config_.max_range_m) &
+                         (abs(distance_m) <= max(truncation_m_, sigma_m * config_.truncation_sigmas));
+    return {p_camera, distance_m, sigma_m, free.bits(), sampled.bits()};
+  }
+
+  /// Updates the eight cells of `node`, and returns the node's new state. With coarse cells, may_be_coarse()
+  /// must hold for the node.
+  /// @param hit  bit i: a ray ends in cell i
+  /// @param refresh_colour  true: also updates colours of cells for which this frame's fraction of the weight
+  ///                        is below kMinColourFraction
+  Slot update(Slot node, const Observed<Float8>& observed, unsigned hit, bool refresh_colour) {
+    const unsigned missed = observed.free & ~hit;
+    unsigned sampled = observed.sampled;
+    if ((hit | missed | sampled) == 0) return node;
+    if ((hit | sampled) == 0 && node == saturated_free()) return node;
+    LeafBlock made;
+    if (!node.is_leaf_block()) made = opened(node);
+    LeafBlock& block = node.is_leaf_block() ? tree_.leaves(node) : made;
+    if ((hit | missed) != 0) add_log_odds(block, hit, missed);
+    if (const unsigned gone = missed & seen_through(block, observed); gone != 0)
+      sampled &= ~cancel_samples(block, weight_of(observed.sigma_m), gone);
+    if (sampled != 0) add_samples(block, observed, sampled, refresh_colour);
+    return pruned(node, block);
+  }
+
+  /// Adds a miss to all voxels of a block, after a frame of this weight saw through all of them. With
+  /// `clear`, the frame also saw through the space around the block. Then each sample's distance is averaged
+  /// with the truncation distance. The sample is erased once its voxel has the minimum log-odds and its
+  /// distance exceeds 0.7 of the truncation distance. Without samples, the voxels can merge with the free
+  /// space around them.
+  ///
+  /// Without `clear`, most samples are kept. Next to edges and on obliquely seen surfaces, seeing through a
+  /// voxel is caused by noise more often than by a change. Samples behind a surface are different: frames see
+  /// through them only if the surface has gone. Each such frame subtracts kCancelled times its weight from
+  /// the sample's weight. Otherwise an object too close to a wall for `clear` would leave its back side in
+  /// the map after it moved away.
+  Slot mark_free(Slot node, float weight, bool clear) {
+    LeafBlock& block = tree_.leaves(node);
+    add_log_odds(block, 0, 0xFFU);
+    if (clear)
+      fade_samples(block, weight);
+    else if (const unsigned gone = behind_surface(block); gone != 0)
+      cancel_samples(block, weight, gone);
+    return pruned(node, block);
+  }
+
+ private:
+  [[nodiscard]] LeafBlock opened(Slot node) const {
+    return size_ == CellSize::kCoarse ? opened_coarse(tree_, node) : opened_leaves(node);
+  }
+  [[nodiscard]] Slot pruned(Slot node, const LeafBlock& block) const {
+    return size_ == CellSize::kCoarse ? prune_coarse(tree_, node, block) : tree_.prune(node, block);
+  }
+
+  // Max distance from the surface, in cells, of samples that take the surface's colour. The colours of mesh
+  // vertices are interpolated from these samples only.
+  static constexpr float kColourCells = 1.5F;
+  // A measurement with less than this fraction of the total weight leaves the colour unchanged, except on a
+  // refresh. On a refresh, the measurement is weighted with this fraction. Smaller changes would be lost in
+  // rounding to 8 bits.
+  static constexpr float kMinColourFraction = 1.0F / 8.0F;
+
+  // Min distance, in cells, at which a sample counts as behind a surface. Frames see past samples nearer to
+  // the surface too often, because of noise and pose errors.
+  static constexpr float kBehind_cells = 0.5F;
+  // A frame that sees through a sample subtracts this many times its own weight from the sample's weight. The
+  // factor is above 1, since the first such frames only make the voxel free. Also, an object that was present
+  // in half of the frames should disappear.
+  static constexpr float kCancelled = 2.0F;
+
+  [[nodiscard]] float in_steps(float log_odds) const { return std::round(log_odds / tree_.units().log_odds); }
+
+  static Float8 weight_of(const Float8& sigma_m) {
+    const Float8 ratio = Float8(kUnitWeightSigma_m) / sigma_m;
+    return min(ratio * ratio, 1.0F);
+  }
+
+  void add_log_odds(LeafBlock& block, unsigned hit, unsigned missed) const {
+    const Float8 before = Float8::load(block.log_odds);
+    const Float8 after = select(Float8::Mask::of_bits(hit), min(before + log_odds_.hit, log_odds_.max),
+                                max(before + log_odds_.miss, log_odds_.min));
+    const Float8 known = select(after == Float8(0.0F), 1.0F, after);
+    select(Float8::Mask::of_bits(hit | missed), known, before).store_rounded(block.log_odds);
+  }
+
+  // Returns the voxels (bit i: voxel i) that have a sample behind a surface and are not occupied. Occupied
+  // voxels keep their samples, since ghost removal ignores voxels without samples.
+  [[nodiscard]] unsigned behind_surface(const LeafBlock& block) const {
+    return ((Float8::load(block.distance) < Float8(behind_)) & (Float8::load(block.log_odds) <= 0.0F)).bits();
+  }
+  // Returns the voxels of behind_surface() that this frame sees through: its depth exceeds the depth of the
+  // voxel's stored surface by more than the truncation distance.
+  [[nodiscard]] unsigned seen_through(const LeafBlock& block, const Observed<Float8>& observed) const {
+    const Float8 further =
+        observed.distance_m * (1.0F / tree_.units().distance_m) - Float8::load(block.distance);
+    return behind_surface(block) & (Float8(truncation_m_ / tree_.units().distance_m) < further).bits();
+  }
+
+  // Subtracts the weight of a frame that sees through the samples of the voxels in `gone`. Returns the voxels
+  // whose samples remain.
+  unsigned cancel_samples(LeafBlock& block, const Float8& weight, unsigned gone) const {
+    const Float8 own_weight = Float8::load(block.weight);
+    const Float8 cancelled = max(weight * (kCancelled / tree_.units().weight), 1.0F);
+    select(Float8::Mask::of_bits(gone), max(own_weight - cancelled, 0.0F), own_weight)
+        .store_rounded(block.weight);
+    const auto kept = Float8(0.0F) < Float8::load(block.weight);
+    select(kept, Float8::load(block.distance), 0.0F).store_rounded(block.distance);
+    block.coloured &= static_cast<std::uint8_t>(kept.bits());
+    return gone & kept.bits();
+  }
+
+  void fade_samples(LeafBlock& block, float weight) const {
+    const BlockUnits& units = tree_.units();
+    const Float8 own_weight = Float8::load(block.weight);
+    const Float8 gained(std::max(weight * config_.seen_through_gain / units.weight, 1.0F));
+    const Float8 distance = Float8::load(block.distance);
+    const Float8 truncation(truncation_m_ / units.distance_m);
+    const Float8 sum = own_weight + gained;
+    const Float8 further = distance + (max(truncation, distance) - distance) * (gained / sum);
+    const auto sampled = Float8(0.0F) < own_weight;
+    const auto forgotten = (Float8::load(block.log_odds) <= log_odds_.min) & (truncation * 0.7F < further);
+    const auto kept = Float8::Mask::of_bits(sampled.bits() & ~forgotten.bits());
+    select(kept, further, 0.0F).store_rounded(block.distance);
+    select(kept, sum, 0.0F).store_rounded(block.weight);
+    block.coloured &= static_cast<std::uint8_t>(kept.bits());
+  }
+
+  void add_samples(LeafBlock& block, const Observed<Float8>& observed, unsigned which, bool refresh_colour) {
+    const BlockUnits& units = tree_.units();
+    const Float8 own_weight = Float8::load(block.weight);
+    const Float8 weight = max(floor(weight_of(observed.sigma_m) * (1.0F / units.weight) + 0.5F), 1.0F);
+    const Float8 sum = own_weight + weight;
+    const Float8 part = weight / sum;
+    const Float8 distance = Float8::load(block.distance);
+    const Float8 mean = distance + (observed.distance_m * (1.0F / units.distance_m) - distance) * part;
+    const auto sampled = Float8::Mask::of_bits(which);
+    select(sampled, mean, distance).store_rounded(block.distance);
+    select(sampled, sum, own_weight).store_rounded(block.weight);
+    if (!has_colour_) return;
+    unsigned take = which & (abs(observed.distance_m) < colour_distance_m_).bits();
+    if (!refresh_colour) take &= ~block.coloured | (Float8(kMinColourFraction) <= part).bits();
+    if (take != 0) add_colours(block, observed.p_camera, max(part, kMinColourFraction), take);
+  }
+
+  void add_colours(LeafBlock& block, const EightPoints<Float8>& p_camera, const Float8& part, unsigned take) {
+    const Eigen::Matrix4f& T = T_colour_depth_;
+    const auto along = [&](int row) {
+      return p_camera.x * T(row, 0) + p_camera.y * T(row, 1) + p_camera.z * T(row, 2) + T(row, 3);
+    };
+    const Float8 z = along(2);
+    const Float8 inverse_z = Float8(1.0F) / z;
+    const Float8 u = along(0) * colour_camera_.fx * inverse_z + colour_camera_.cx;
+    const Float8 v = along(1) * colour_camera_.fy * inverse_z + colour_camera_.cy;
+    const auto in_image = (Float8(kNearest_m) < z) & (Float8(0.0F) <= u) & (u < colour_camera_.width - 1.0F) &
+                          (Float8(0.0F) <= v) & (v < colour_camera_.height - 1.0F);
+    take &= in_image.bits();
+    if (take == 0) return;
+    alignas(32) std::array<float, 8> pixel_x, pixel_y, parts;
+    (u + 0.5F).store(pixel_x);
+    (v + 0.5F).store(pixel_y);
+    part.store(parts);
+    ColourBlock& colours = tree_.colours(block);
+    for (; take != 0; take &= take - 1) {
+      const auto i = static_cast<unsigned>(std::countr_zero(take));
+      const Rgb seen = frame_.colour.at(static_cast<int>(pixel_x[i]), static_cast<int>(pixel_y[i]));
+      Rgb& own = colours.colours[i];
+      own = (block.coloured >> i & 1U) != 0 ? blended(own, seen, parts[i]) : seen;
+      block.coloured |= static_cast<std::uint8_t>(1U << i);
+    }
+  }
+
+  static Rgb blended(const Rgb& own, const Rgb& seen, float part) {
+    const auto channel = [part](std::uint8_t a, std::uint8_t b) {
+      return static_cast<std::uint8_t>(static_cast<float>(a) + static_cast<float>(b - a) * part + 0.5F);
+    };
+    return {channel(own.r, seen.r), channel(own.g, seen.g), channel(own.b, seen.b)};
+  }
+
+  BlockOctree& tree_;
+  const Frame& frame_;
+  const FusionConfig& config_;
+  CellSize size_;
+  float cell_m_;
+  Pinhole camera_, colour_camera_;
+  Eigen::Matrix4f T_colour_depth_;
+  float truncation_m_, colour_distance_m_;
+  float behind_;  // -kBehind_cells as distance, in units of BlockUnits::distance_m
+  // In units of BlockUnits::log_odds.
+  struct LogOddsSteps {
+    float hit, miss, min, max;
+  };
+  LogOddsSteps log_odds_;
+  bool has_colour_ = false;
+};
 
 using HitRange = std::span<const BlockHits>;
 
