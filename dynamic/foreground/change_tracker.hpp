@@ -4,15 +4,87 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <string_view>
 #include <vector>
 
-#include "dynamic/foreground/change_clusters.hpp"
 #include "dynamic/foreground/change_tracker_config.hpp"
 #include "dynamic/foreground/foreground.hpp"
 #include "mapping/types/image.hpp"
 #include "mapping/types/intrinsics.hpp"
 
 namespace roomradar {
+
+enum class LastingKind : std::uint8_t {
+  kCame,  ///< new object, where the static model has no surface
+  kWent,  ///< removed object: the sensor sees through its surface in the model
+};
+/// Returns the kind's name in reports.
+std::string_view to_string(LastingKind kind);
+
+/// An object that appeared or disappeared, given as points of its surface. The points are about
+/// ChangeTrackerConfig::spacing_m apart.
+struct LastingChange {
+  LastingKind kind = LastingKind::kCame;
+  std::vector<Eigen::Vector3d> points_world;
+  std::vector<std::uint32_t> ids;  ///< ids of the points, ascending
+  [[nodiscard]] Eigen::AlignedBox3d box_world() const;
+};
+
+/// A point on a surface that appeared or disappeared, with its observation times.
+struct ChangePoint {
+  /// Relative to the tracker's origin, in the axes of the world frame.
+  Eigen::Vector3f position = Eigen::Vector3f::Zero();
+  float steady_s = 0.0F;  ///< total duration of the frames that confirmed the point
+  float unseen_s = 0.0F;  ///< time since a frame last showed its position
+  std::uint32_t id = 0;
+  std::uint16_t sightings = 1;  ///< number of frames averaged into position
+  /// +2 per contradicting frame, -1 per confirming one; above 7, the point is dropped.
+  std::uint8_t contradiction = 0;
+  bool as_it_was = true;    ///< confirmed by the last frame
+  bool before_map = false;  ///< a frame that confirmed it saw it in front of a surface of the map
+  LastingKind kind = LastingKind::kCame;
+};
+
+/// A cell of the grid (a cube of edge link_m) that contains points.
+struct ChangeCell {
+  std::uint64_t code = 0;       ///< voxel_key() of the cube
+  std::uint32_t joined_to = 0;  ///< parent cell in a union-find forest; a root is its own parent
+  bool steady = false;          ///< contains a point that was confirmed for long enough
+  std::uint8_t neighbours = 0;  ///< number of touching cells, corners included
+};
+
+/// Sums over the connected cells of one object. Steady cells have ChangeCell::steady set, core cells have at
+/// least 7 neighbours, seen points were confirmed by the last frame, and known points are before_map.
+struct ChangeObject {
+  int cells = 0, steady_cells = 0, core_cells = 0;
+  std::size_t points = 0, seen_points = 0, known_points = 0;
+  std::size_t change = 0;  ///< 1 + index among the changes found; 0: rejected
+};
+
+/// Buffers of the grouping, reused from call to call.
+struct ChangeClusters {
+  std::vector<ChangeCell> cells;
+  std::vector<ChangeObject> objects;   ///< indexed by an object's root cell
+  std::vector<std::uint32_t> cell_of;  ///< per point; 0xFFFFFFFF for points of the other kind
+  std::vector<std::uint32_t> table;    ///< hash table of cells by code; 0xFFFFFFFF: empty slot
+};
+
+/// Reserves memory for max_points points, so later calls do not allocate.
+void reserve(std::size_t max_points, ChangeClusters& clusters);
+
+/// Fills `cells` and `cell_of` from the points of one kind, and connects cells in the 26-neighbourhood.
+/// @param seconds  min steady_s of a point that makes its cell steady
+/// @param link_m   edge of the cells
+void sort_into_cells(std::span<const ChangePoint> points, LastingKind kind, float seconds, float link_m,
+                     ChangeClusters& clusters);
+
+/// Appends the objects that reach the thresholds of ChangeTrackerConfig: min_cells, and the min fractions of
+/// steady cells, core cells (kWent only), seen points and known points (kCame only). Call after
+/// sort_into_cells() with the same points and kind.
+void add_objects(std::span<const ChangePoint> points, LastingKind kind, const Eigen::Vector3d& origin_world,
+                 const ChangeTrackerConfig& config, ChangeClusters& clusters,
+                 std::vector<LastingChange>& changes);
 
 /// Stores world points on dynamic and on removed surfaces, and projects them into every depth image. A frame
 /// confirms a point on a dynamic surface if it measures the surface at the point. A frame confirms a point on

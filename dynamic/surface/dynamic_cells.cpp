@@ -2,13 +2,63 @@
 #include "dynamic/surface/dynamic_cells.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
-#include "dynamic/surface/cell_jumps.hpp"
+#include "dynamic/surface/cell_outline.hpp"
+#include "dynamic/surface/depth_discontinuity.hpp"
 
 namespace roomradar {
 namespace {
+
+/// Inverse depths of a cell's 5 x 5 pixels, 1/m, row by row. Only those of dynamic pixels are valid.
+using CellValues = std::array<float, 25>;
+
+/// Returns a pixel's index in CellValues and its bit in CellBits.
+constexpr int place(CellPixel p) { return 5 * p.y + p.x; }
+
+/// Discontinuities between adjacent dynamic pixels. Bit k of `right` stands for pixel k and its right
+/// neighbour, bit k of `down` for pixel k and the pixel below.
+struct CellJumps {
+  CellBits right = 0, down = 0;
+  [[nodiscard]] bool any() const { return (right | down) != 0; }
+  /// Returns true if a discontinuity separates the pixels a and b, which must be adjacent in a row or column.
+  [[nodiscard]] bool between(CellPixel a, CellPixel b) const {
+    const int first = std::min(place(a), place(b));
+    return ((a.y == b.y ? right : down) >> first & 1U) != 0;
+  }
+};
+
+constexpr CellBits kNotLastColumn = 0b01111'01111'01111'01111'01111U;
+
+/// Returns the discontinuities between adjacent pixels of `in`.
+CellJumps find_jumps(CellBits in, const CellValues& values, const DepthDiscontinuity& rule) {
+  CellJumps jumps;
+  for (CellBits left = in & in >> 1 & kNotLastColumn; left != 0; left &= left - 1) {
+    const auto k = static_cast<std::size_t>(std::countr_zero(left));
+    if (!rule.is_one_surface_inverse(values[k], values[k + 1])) jumps.right |= left & -left;
+  }
+  for (CellBits above = in & in >> 5; above != 0; above &= above - 1) {
+    const auto k = static_cast<std::size_t>(std::countr_zero(above));
+    if (!rule.is_one_surface_inverse(values[k], values[k + 5])) jumps.down |= above & -above;
+  }
+  return jumps;
+}
+
+/// Returns the pixels of `in` that are connected to the pixel of its lowest bit without crossing a
+/// discontinuity.
+CellBits take_surface(CellBits in, const CellJumps& jumps) {
+  const CellBits can_right = in & in >> 1 & kNotLastColumn & ~jumps.right;
+  const CellBits can_down = in & in >> 5 & ~jumps.down;
+  CellBits surface = in & -in;
+  for (CellBits before = 0; before != surface;) {
+    before = surface;
+    surface |= (surface & can_right) << 1 | (surface >> 1 & can_right);
+    surface |= (surface & can_down) << 5 | (surface >> 5 & can_down);
+  }
+  return surface;
+}
 
 constexpr std::array<int, 4> kCorners{0, 4, 8, 12};  // indices into the ring
 

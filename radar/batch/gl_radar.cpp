@@ -6,15 +6,136 @@
 #include <GL/glcorearb.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
 #include <string>
 
 #include "mapping/types/system/error.hpp"
+#include "radar/batch/tile_shaders.hpp"
+#include "radar/exact/radar_pictures.hpp"
 #include "radar/gl/gl_program.hpp"
 
 namespace roomradar {
+namespace {
+
+const Eigen::Vector2d kSample_px(kSampleX_px, kSampleY_px);  // as in tile_shaders.hpp
+
+}  // namespace
+
+Contact contact_of(const GlQuery& query, const RadarOutline& outline, const TileResult& result,
+                   std::span<const SceneRun> runs, std::span<const GpuSceneMesh> scene) {
+  const double touching = touching_m(outline, query.distance_m);
+  Contact contact;
+  contact.pixel_m = outline.pixel_m;
+  constexpr double kSubtraction = 1.0 - 2e-7;  // rounding of the z of scene and object to float
+  contact.lower_m = std::min(kSubtraction * result.lower_m, query.distance_m);
+  if (!(result.contact_distance_m <= query.distance_m + touching)) {
+    contact.status = ContactStatus::kNoTarget;
+    return contact;
+  }
+  if (result.contact_distance_m < -touching) {
+    contact.status = ContactStatus::kOverlap;
+    contact.contact_distance_m = contact.lower_m = contact.upper_m = result.contact_distance_m;
+  } else {
+    contact.status = ContactStatus::kContact;
+    contact.contact_distance_m = std::max(static_cast<double>(result.contact_distance_m), 0.0);
+    contact.lower_m = std::min(contact.lower_m, contact.contact_distance_m);
+    contact.upper_m =
+        std::max(static_cast<double>(result.upper_m) / kSubtraction, contact.contact_distance_m);
+  }
+
+  // The touched triangle at the pixel's centre line, in double.
+  const RadarVolume volume = volume_of(outline, query.object, query.distance_m);
+  contact.normal_world = -volume.u_world;
+  Eigen::Vector3d at(result.x_px + kSample_px.x(), result.y_px + kSample_px.y(), result.contact_distance_m);
+  const auto past =
+      std::upper_bound(runs.begin(), runs.end(), result.key,
+                       [](std::uint32_t key, const SceneRun& run) { return key < run.first_key; });
+  if (result.key != std::numeric_limits<std::uint32_t>::max() && past != runs.begin()) {
+    const SceneRun& run = *(past - 1);
+    const GpuSceneMesh& met = scene[run.scene_index];
+    const GpuMesh& mesh = *met.instance.mesh;
+    const Triangle& triangle = mesh.triangles()[run.first_triangle + (result.key - run.first_key)];
+    std::array<Eigen::Vector3d, 3> p;
+    for (std::size_t i = 0; i < 3; ++i) p[i] = mesh.vertices()[triangle[i]].cast<double>();
+    const Eigen::Vector3d normal_local = (p[1] - p[0]).cross(p[2] - p[0]);
+    const Eigen::Matrix<double, 3, 4> to_outline = outline_from_local(outline, query.object, met.instance);
+    for (Eigen::Vector3d& corner : p) corner = to_outline.leftCols<3>() * corner + to_outline.col(3);
+    const Eigen::Vector3d normal_outline = (p[1] - p[0]).cross(p[2] - p[0]);
+    at.z() = p[0].z() - normal_outline.head<2>().dot(at.head<2>() - p[0].head<2>()) / normal_outline.z();
+    contact.normal_world = (met.instance.T_world_mesh.linear() * normal_local).stableNormalized();
+    if (contact.normal_world.dot(volume.u_world) > 0.0) contact.normal_world = -contact.normal_world;
+    contact.touched = met.kind;
+  }
+  contact.point_world = volume.origin_world + at.x() * outline.pixel_m * volume.x_world +
+                        at.y() * outline.pixel_m * volume.y_world +
+                        (at.z() + outline.length_m) * volume.u_world;
+  return contact;
+}
+
+void TileBatch::clear() {
+  queries.clear();
+  object_draws.clear();
+  scene_draws.clear();
+}
+
+TilePasses::TilePasses(GlContext& context) : object_(context), scene_(context) {
+  GLint geometry_blocks = 0;
+  glGetIntegerv(GL_MAX_GEOMETRY_SHADER_STORAGE_BLOCKS, &geometry_blocks);
+  if (geometry_blocks < 1) {
+    throw Error("radar: " + context.renderer() +
+                " has no storage blocks in geometry shaders; use the software renderer "
+                "(ROOMRADAR_RENDERER=software)");
+  }
+  clear_program_ = make_program("radar clear", {{GL_VERTEX_SHADER, {kTilePreamble, kClearVertexShader}},
+                                                {GL_FRAGMENT_SHADER, {kTilePreamble, kClearFragmentShader}}});
+  const auto make_tile_program = [](const char* name, const char* gap, const char* shader) {
+    return make_program(
+        name, {{GL_VERTEX_SHADER, {kTilePreamble, kTileVertexShader}},
+               {GL_GEOMETRY_SHADER, {kTilePreamble, kTileGeometryInputs, kTileGeometryShader}},
+               {GL_FRAGMENT_SHADER, {kTilePreamble, kTileFragmentInputs, kSpanSource, gap, shader}}});
+  };
+  object_.program = make_tile_program("radar object", "", kObjectTileShader);
+  scene_.program = make_tile_program("radar scene", kGapSource, kSceneTileShader);
+}
+
+TilePasses::~TilePasses() {
+  for (const unsigned program : {clear_program_, object_.program, scene_.program}) glDeleteProgram(program);
+}
+
+void TilePasses::forget() {
+  object_.draws.forget();
+  scene_.draws.forget();
+}
+
+void TilePasses::draw(TileBatch& batch, LeastGap& least) {
+  const auto use = [](unsigned program, const TileAtlas& atlas) {
+    glUseProgram(program);
+    glUniform2f(0, 2.0F / static_cast<float>(atlas.width_px()), 2.0F / static_cast<float>(atlas.height_px()));
+  };
+  if (!batch.object_draws.empty()) {
+    object_.draws.upload(batch.object_draws);
+    object_.tiles.bind(false);
+    use(clear_program_, object_.tiles);
+    object_.draws.draw_rectangles();
+    object_.tiles.bind(true);
+    use(object_.program, object_.tiles);
+    glUniform1i(1, 0);
+    object_.draws.draw();
+  }
+  scene_.draws.upload(batch.scene_draws);
+  scene_.tiles.bind(true);
+  scene_.tiles.clear(batch.queries.size(), kClearValue);
+  use(scene_.program, scene_.tiles);
+  glUniform1i(1, 1);
+  glBindTextureUnit(0, object_.tiles.texture());
+  scene_.draws.draw();
+  least.reduce(batch.queries, scene_.tiles);
+  least.find_keys(scene_.draws, object_.tiles);
+}
+
 namespace {
 
 constexpr std::size_t kMasksKept = 16;  // at least, if the atlas may be that large

@@ -2,6 +2,7 @@
 // passes.
 #pragma once
 #include <Eigen/Geometry>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -12,8 +13,8 @@
 #include "radar/batch/least_gap.hpp"
 #include "radar/batch/mask_cache.hpp"
 #include "radar/batch/radar_volume.hpp"
-#include "radar/batch/tile_contact.hpp"
-#include "radar/batch/tile_passes.hpp"
+#include "radar/batch/tile_atlas.hpp"
+#include "radar/batch/tile_draws.hpp"
 #include "radar/exact/cyber_radar.hpp"
 #include "radar/exact/radar_pictures.hpp"
 #include "radar/geometry/contact.hpp"
@@ -21,6 +22,68 @@
 #include "radar/gl/gpu_mesh.hpp"
 
 namespace roomradar {
+
+/// A contiguous range of a scene mesh's triangles, in chunks whose bounding boxes intersect a query's volume.
+/// Every triangle in a range has a key that is unique within the query. Triangle first_triangle + k of the
+/// mesh has the key first_key + k.
+struct SceneRun {
+  /// Index into the scene of contact_of().
+  std::size_t scene_index = 0;
+  std::uint32_t first_triangle = 0;
+  std::uint32_t first_key = 0;
+};
+
+/// Returns the contact (status, bounds, point, normal and kind) of a query that was drawn.
+/// @param outline  bounding rectangle and pixel grid of the object, seen along its direction of motion
+/// @param result   least gap over the query's pixels, its pixel, and the key of the triangle touched
+/// @param runs     triangle ranges that intersect the query's volume, by ascending first_key
+/// @param scene    meshes for which the query was drawn; SceneRun::scene_index is an index into it
+Contact contact_of(const GlQuery& query, const RadarOutline& outline, const TileResult& result,
+                   std::span<const SceneRun> runs, std::span<const GpuSceneMesh> scene);
+
+/// Queries that are drawn together, and their draws.
+struct TileBatch {
+  std::vector<TileQuery> queries;
+  /// Draws of the objects whose masks are not cached.
+  std::vector<TileDraw> object_draws;
+  /// Draws of the scene.
+  std::vector<TileDraw> scene_draws;
+
+  void clear();
+};
+
+/// Owns the shader programs, textures and buffers of both passes. Not thread safe.
+class TilePasses {
+ public:
+  /// @throws Error if the renderer lacks a required feature
+  explicit TilePasses(GlContext& context);
+  ~TilePasses();
+  TilePasses(const TilePasses&) = delete;
+  TilePasses& operator=(const TilePasses&) = delete;
+
+  /// Returns the tiles with the objects' masks (M), indexed as in MaskCache.
+  TileAtlas& object_tiles() { return object_.tiles; }
+  [[nodiscard]] const TileAtlas& object_tiles() const { return object_.tiles; }
+  /// Returns the tiles of the scene, indexed by the query's index in its batch.
+  TileAtlas& scene_tiles() { return scene_.tiles; }
+  [[nodiscard]] const TileAtlas& scene_tiles() const { return scene_.tiles; }
+
+  /// Draws both passes for the queries of the batch, and writes the minimum over each scene tile to `least`.
+  /// Sorts the batch's draws. Requires at least one query.
+  void draw(TileBatch& batch, LeastGap& least);
+  /// Makes the next call reallocate the buffers. Call it after the renderer failed.
+  void forget();
+
+ private:
+  struct Pass {
+    explicit Pass(GlContext& context) : tiles(context), draws(context) {}
+    TileAtlas tiles;
+    TileDraws draws;
+    unsigned program = 0;
+  };
+  Pass object_, scene_;
+  unsigned clear_program_ = 0;
+};
 
 /// Computes the distance to contact of an object that moves along a line. Contact is in the pixel with the
 /// least gap between the object's front and the scene ahead of it.
