@@ -2,7 +2,7 @@
 #include "app/calibration/calibrate.hpp"
 
 #include <ceres/ceres.h>
-
+#include <ceres/rotation.h>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -11,14 +11,254 @@
 #include <opencv2/calib3d.hpp>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "app/calibration/board_pose.hpp"
-#include "app/calibration/calibration_problem.hpp"
+#include "app/calibration/board_views.hpp"
+#include "app/calibration/calibration.hpp"
+#include "app/calibration/checkerboard.hpp"
 #include "app/sources/formats/median.hpp"
+#include "mapping/types/depth_noise.hpp"
+#include "mapping/types/intrinsics.hpp"
+#include "mapping/types/lens.hpp"
 #include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 
+namespace ceres {
+class Problem;
+}
+
 namespace roomradar {
+namespace {
+
+/// T_a_b as rotation vector (rad) and translation (m): x_a = R x_b + t.
+struct PoseBlock {
+  std::array<double, 6> turn_and_shift{};
+};
+
+/// A camera and its lens: fx, fy, cx, cy (px), k1, k2, p1, p2, k3.
+using CameraBlock = std::array<double, 9>;
+
+/// Parameters of the fit, and its result.
+struct CalibrationUnknowns {
+  CameraBlock colour, depth;
+  PoseBlock T_colour_depth;
+  std::vector<PoseBlock> T_colour_board;  ///< the checkerboard's pose in each view
+  double inverse_scale = 1.0;
+  std::vector<double> nodes;  ///< offsets of the depth correction (1/m), row by row
+};
+
+/// Number of nodes of the depth correction, and the size of the depth images that its grid covers.
+struct CorrectionGrid {
+  int columns = 0, rows = 0;
+  int width_px = 0, height_px = 0;
+};
+
+constexpr double kCornerSigma_px = 0.15;
+// Depth sigmas are inflated: adjacent samples share most of their noise, and the board is not perfectly flat.
+constexpr double kDepthSigmas = 2.0;
+// Priors on the correction: its sigma, and the sigma of the difference between adjacent nodes.
+constexpr double kNodeStep_per_m = 8e-4;
+constexpr double kNodeSize_per_m = 0.02;
+constexpr double kRobust_sigmas = 3.0;
+
+struct CornerError {
+  Eigen::Vector3d p_board;
+  Eigen::Vector2d seen_px;
+
+  template <typename T>
+  bool operator()(const T* camera, const T* T_colour_board, T* residual) const {
+    const std::array<T, 3> on_board{T(p_board.x()), T(p_board.y()), T(p_board.z())};
+    std::array<T, 3> p;
+    ceres::AngleAxisRotatePoint(T_colour_board, on_board.data(), p.data());
+    for (std::size_t i = 0; i < 3; ++i) p[i] += T_colour_board[3 + i];
+    if (!(p[2] > T(1e-3)))
+      p[2] = T(1e-3);  // large residual if a solver step moves the board behind the
+                       // camera
+    const PlanePoint<T> at = distorted(PlanePoint<T>{p[0] / p[2], p[1] / p[2]}, camera[4], camera[5],
+                                       camera[6], camera[7], camera[8]);
+    residual[0] = (camera[0] * at.x + camera[2] - seen_px.x()) / kCornerSigma_px;
+    residual[1] = (camera[1] * at.y + camera[3] - seen_px.y()) / kCornerSigma_px;
+    return true;
+  }
+};
+
+struct DepthError {
+  DepthSample sample;
+  GridPlace place;
+  double sigma_per_m;
+
+  /// The last four parameters are nodes of the depth correction.
+  template <typename T>
+  bool operator()(const T* camera, const T* T_colour_depth, const T* T_colour_board, const T* inverse_scale,
+                  const T* up_left, const T* up_right, const T* down_left, const T* down_right,
+                  T* residual) const {
+    const PlanePoint<T> ray_plane = undistorted(
+        PlanePoint<T>{(sample.x_px - camera[2]) / camera[0], (sample.y_px - camera[3]) / camera[1]},
+        camera[4], camera[5], camera[6], camera[7], camera[8]);
+    // Plane in the colour camera's frame: n . p = distance; the point at depth z of the ray is R ray z + t.
+    const std::array<T, 3> z_board{T(0), T(0), T(1)};
+    std::array<T, 3> n, ray;
+    ceres::AngleAxisRotatePoint(T_colour_board, z_board.data(), n.data());
+    const std::array<T, 3> ray_depth{ray_plane.x, ray_plane.y, T(1)};
+    ceres::AngleAxisRotatePoint(T_colour_depth, ray_depth.data(), ray.data());
+    T distance(0), along(0);
+    for (std::size_t i = 0; i < 3; ++i) {
+      distance += n[i] * (T_colour_board[3 + i] - T_colour_depth[3 + i]);
+      along += n[i] * ray[i];
+    }
+    const T inverse_of_plane = along / distance;
+    const T offset = (1.0 - place.down) * ((1.0 - place.right) * *up_left + place.right * *up_right) +
+                     place.down * ((1.0 - place.right) * *down_left + place.right * *down_right);
+    // The residual is in reported depth, expected minus measured. With inverse_scale applied to the measured
+    // value, noise would bias the scale towards 0.
+    residual[0] = ((inverse_of_plane - offset) / *inverse_scale - 1.0 / sample.reported_m) / sigma_per_m;
+    return true;
+  }
+};
+
+/// Priors that pull a node towards its neighbour (NodeDifference) or towards 0 (NodeSize).
+struct NodeDifference {
+  double sigma_per_m;
+  template <typename T>
+  bool operator()(const T* a, const T* b, T* residual) const {
+    residual[0] = (*a - *b) / sigma_per_m;
+    return true;
+  }
+};
+struct NodeSize {
+  double sigma_per_m;
+  template <typename T>
+  bool operator()(const T* node, T* residual) const {
+    residual[0] = *node / sigma_per_m;
+    return true;
+  }
+};
+
+double inverse_sigma_per_m(double depth_m) {
+  return kDepthSigmas * static_cast<double>(depth_sigma_m(DepthNoise{}, static_cast<float>(depth_m))) /
+         (depth_m * depth_m);
+}
+
+/// Convert between a pose and its parameters.
+PoseBlock pose_of(const Eigen::Isometry3d& T_a_b) {
+  const Eigen::AngleAxisd turn(T_a_b.linear());
+  const Eigen::Vector3d axis = turn.angle() * turn.axis();
+  const Eigen::Vector3d shift = T_a_b.translation();
+  return {{axis.x(), axis.y(), axis.z(), shift.x(), shift.y(), shift.z()}};
+}
+
+Eigen::Isometry3d isometry_of(const PoseBlock& pose) {
+  const Eigen::Vector3d axis(pose.turn_and_shift.data());
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  if (axis.norm() > 0.0) T.linear() = Eigen::AngleAxisd(axis.norm(), axis.normalized()).toRotationMatrix();
+  T.translation() = Eigen::Vector3d(pose.turn_and_shift.data() + 3);
+  return T;
+}
+
+/// Convert between a camera and its parameters. `sized` provides the image size of the result.
+CameraBlock block_of(const Intrinsics& camera, const Lens& lens) {
+  return {camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px, lens.k1,
+          lens.k2,      lens.p1,      lens.p2,      lens.k3};
+}
+Intrinsics camera_of(const CameraBlock& block, Intrinsics sized) {
+  sized.fx_px = block[0];
+  sized.fy_px = block[1];
+  sized.cx_px = block[2];
+  sized.cy_px = block[3];
+  return sized;
+}
+Lens lens_of(const CameraBlock& block) { return {block[4], block[5], block[6], block[7], block[8]}; }
+
+/// Adds the residuals of one view. Residuals are the reprojection errors of corners (sigma 0.15 px) and the
+/// differences of inverse depth from the checkerboard's plane (sigma: twice the sensor's noise). The loss is
+/// Huber's.
+/// @param T_colour_board  the checkerboard's pose in this view. Must be an element of unknowns.T_colour_board
+/// @param unknowns        must outlive the problem and must not move
+void add_view(const BoardView& view, const Board& board, const CorrectionGrid& grid,
+              PoseBlock& T_colour_board, CalibrationUnknowns& unknowns, ceres::Problem& problem) {
+  double* board_pose = T_colour_board.turn_and_shift.data();
+  for (int row = 0; row < board.rows; ++row)
+    for (int column = 0; column < board.columns; ++column) {
+      const auto i = static_cast<std::size_t>(row * board.columns + column);
+      auto* error = new CornerError{corner_board(board, column, row), view.corners_px[i]};
+      problem.AddResidualBlock(new ceres::AutoDiffCostFunction<CornerError, 2, 9, 6>(error),
+                               new ceres::HuberLoss(kRobust_sigmas), unknowns.colour.data(), board_pose);
+    }
+  for (const DepthSample& sample : view.depth) {
+    const GridPlace place =
+        grid_place(grid.columns, grid.rows, grid.width_px, grid.height_px, sample.x_px, sample.y_px);
+    double* up = unknowns.nodes.data() + place.row * grid.columns + place.column;
+    double* down = up + grid.columns;
+    auto* error = new DepthError{sample, place, inverse_sigma_per_m(sample.reported_m)};
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<DepthError, 1, 9, 6, 6, 1, 1, 1, 1, 1>(error),
+                             new ceres::HuberLoss(kRobust_sigmas), unknowns.depth.data(),
+                             unknowns.T_colour_depth.turn_and_shift.data(), board_pose,
+                             &unknowns.inverse_scale, up, up + 1, down, down + 1);
+  }
+}
+
+/// Adds two priors on each node of the depth correction. One pulls it towards 0, the other towards its
+/// neighbours.
+void add_smoothness(const CorrectionGrid& grid, CalibrationUnknowns& unknowns, ceres::Problem& problem) {
+  const auto join = [&](int a, int b) {
+    problem.AddResidualBlock(
+        new ceres::AutoDiffCostFunction<NodeDifference, 1, 1, 1>(new NodeDifference{kNodeStep_per_m}),
+        nullptr, &unknowns.nodes[static_cast<std::size_t>(a)], &unknowns.nodes[static_cast<std::size_t>(b)]);
+  };
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column) {
+      const int node = row * grid.columns + column;
+      if (column > 0) join(node - 1, node);
+      if (row > 0) join(node - grid.columns, node);
+      problem.AddResidualBlock(new ceres::AutoDiffCostFunction<NodeSize, 1, 1>(new NodeSize{kNodeSize_per_m}),
+                               nullptr, &unknowns.nodes[static_cast<std::size_t>(node)]);
+    }
+}
+
+}  // namespace
+
+ViewResidual residual_of(const BoardView& view, const Board& board, const Calibration& calibration) {
+  const Intrinsics& colour = *calibration.rig.colour_camera;
+  const Intrinsics& depth = calibration.rig.depth_camera;
+  const Eigen::Isometry3d T_colour_board =
+      pose_of_board(view.corners_px, board, colour, calibration.colour_lens);
+  ViewResidual residual;
+  double sum_px2 = 0.0;
+  for (int row = 0; row < board.rows; ++row)
+    for (int column = 0; column < board.columns; ++column) {
+      const Eigen::Vector3d p = T_colour_board * corner_board(board, column, row);
+      const PlanePoint<double> at = distorted({p.x() / p.z(), p.y() / p.z()}, calibration.colour_lens);
+      const Eigen::Vector2d shown_px(colour.fx_px * at.x + colour.cx_px, colour.fy_px * at.y + colour.cy_px);
+      sum_px2 +=
+          (shown_px - view.corners_px[static_cast<std::size_t>(row * board.columns + column)]).squaredNorm();
+    }
+  residual.colour_rms_px = std::sqrt(sum_px2 / static_cast<double>(view.corners_px.size()));
+
+  const Eigen::Isometry3d T_depth_board = calibration.rig.T_colour_depth.inverse() * T_colour_board;
+  const Eigen::Vector3d normal = T_depth_board.linear().col(2);
+  const double distance_m = normal.dot(T_depth_board.translation());
+  residual.distance_m = (T_depth_board * corner_board(board, board.columns / 2, board.rows / 2)).z();
+  std::vector<double> errors_m;
+  double sum_m2 = 0.0;
+  for (const DepthSample& sample : view.depth) {
+    const PlanePoint<double> p =
+        undistorted({(sample.x_px - depth.cx_px) / depth.fx_px, (sample.y_px - depth.cy_px) / depth.fy_px},
+                    calibration.depth_lens);
+    const double plane_m = distance_m / normal.dot(Eigen::Vector3d(p.x, p.y, 1.0));
+    const double offset =
+        offset_per_m(calibration.depth_correction, depth.width_px, depth.height_px, sample.x_px, sample.y_px);
+    const auto reported_m = static_cast<float>(sample.reported_m);
+    const double error_m =
+        corrected_depth_m(reported_m, calibration.depth_correction.inverse_scale, offset) - plane_m;
+    errors_m.push_back(error_m);
+    sum_m2 += error_m * error_m;
+  }
+  residual.depth_rms_m = std::sqrt(sum_m2 / static_cast<double>(errors_m.size()));
+  residual.depth_bias_m = median_of(std::move(errors_m));
+  return residual;
+}
+
 namespace {
 
 constexpr std::size_t kLeastViews = 12;

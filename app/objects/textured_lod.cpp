@@ -1,17 +1,83 @@
 // textured_lod.cpp: transfers texture coordinates to simplified meshes, and measures the texture's shift.
 #include "app/objects/textured_lod.hpp"
 
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <utility>
+#include <vector>
 
-#include "app/objects/surface_walk.hpp"
+#include "app/objects/triangle_weights.hpp"
+#include "mapping/mesh/triangle_distance.hpp"
+#include "mapping/types/mesh.hpp"
 
 namespace roomradar {
 namespace {
+
+/// Point of a mesh's surface.
+struct SurfaceFoot {
+  std::uint32_t triangle = 0;
+  Eigen::Vector3f weights = Eigen::Vector3f::Zero();  ///< barycentric coordinates in the triangle
+};
+
+/// Finds nearest points by walking between triangles that share a vertex. The search does not cross seams
+/// (edges with duplicated vertices), and does not reach the far side of a thin sheet. The search may end in a
+/// local minimum of the distance.
+class SurfaceWalk {
+ public:
+  /// @param mesh  must outlive the walk; all triangles valid
+  explicit SurfaceWalk(const Mesh& mesh);
+
+  /// Returns a triangle that uses `vertex`. At least one triangle must use it.
+  [[nodiscard]] std::uint32_t triangle_at(std::uint32_t vertex) const { return triangles_[first_[vertex]]; }
+  /// Walks from triangle `start` to the point nearest to p.
+  [[nodiscard]] SurfaceFoot nearest(std::uint32_t start, const Eigen::Vector3f& p) const;
+
+ private:
+  const Mesh& mesh_;
+  std::vector<std::uint32_t>
+      first_;  // per vertex: index of its first entry in triangles_; then triangles_.size()
+  std::vector<std::uint32_t> triangles_;  // triangles of each vertex, vertex by vertex
+
+  [[nodiscard]] float squared_distance(std::uint32_t triangle, const Eigen::Vector3f& p) const;
+};
+
+SurfaceWalk::SurfaceWalk(const Mesh& mesh) : mesh_(mesh), first_(mesh.vertices.size() + 1, 0) {
+  for (const Triangle& t : mesh.triangles)
+    for (const std::uint32_t vertex : t) ++first_[vertex + 1];
+  for (std::size_t v = 1; v < first_.size(); ++v) first_[v] += first_[v - 1];
+  triangles_.resize(3 * mesh.triangles.size());
+  std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const std::uint32_t vertex : mesh.triangles[t]) triangles_[next[vertex]++] = t;
+}
+
+float SurfaceWalk::squared_distance(std::uint32_t triangle, const Eigen::Vector3f& p) const {
+  const Triangle& t = mesh_.triangles[triangle];
+  return squared_distance_to_triangle(p, mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]);
+}
+
+SurfaceFoot SurfaceWalk::nearest(std::uint32_t start, const Eigen::Vector3f& p) const {
+  std::uint32_t at = start;
+  float least = squared_distance(at, p);
+  for (bool has_moved = true; has_moved;) {
+    has_moved = false;
+    const Triangle from = mesh_.triangles[at];
+    for (const std::uint32_t vertex : from)
+      for (std::uint32_t i = first_[vertex]; i < first_[vertex + 1]; ++i) {
+        const float distance = squared_distance(triangles_[i], p);
+        if (!(distance < least)) continue;
+        least = distance;
+        at = triangles_[i];
+        has_moved = true;
+      }
+  }
+  const Triangle& t = mesh_.triangles[at];
+  return {at, triangle_weights(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]], p)};
+}
 
 constexpr double kCountedArea = 0.95;  // part of the area whose shift is bounded
 

@@ -3,13 +3,219 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <list>
+#include <span>
+#include <vector>
 
-#include "app/physics/set_motion.hpp"
+#include "app/physics/contact_queries.hpp"
+#include "app/physics/contact_system.hpp"
 #include "app/physics/sliding.hpp"
 #include "radar/motion/joint_motion.hpp"
+#include "radar/motion/time_of_impact.hpp"
 
 namespace roomradar {
+namespace {
+
+constexpr double kKept = 0.5;  // fraction of the margin at which approaching surfaces stop the motion
+
+/// Returns balls that contain the paths of the active bodies.
+std::vector<PathBall> paths_of(std::span<const MovingBody> bodies, const std::vector<RigidMotion>& motions,
+                               double margin_m) {
+  std::vector<PathBall> paths(bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (!is_active(bodies[i])) continue;
+    const double radius_m = bodies[i].body->mass.radius_m;
+    const double speed_mps = motions[i].linear_m_s.norm() + motions[i].angular_rad_s.norm() * radius_m;
+    paths[i] = {centre_world(*bodies[i].body), radius_m + speed_mps * bodies[i].left_s + margin_m};
+  }
+  return paths;
+}
+
+/// Bodies that move at the same time.
+class MovingSet {
+ public:
+  /// @param set  indices of the bodies
+  MovingSet(std::span<MovingBody> bodies, std::span<const std::size_t> set,
+            const std::vector<RigidMotion>& motions, const std::vector<PathBall>& paths, double margin_m);
+  MovingSet(const MovingSet&) = delete;
+  MovingSet& operator=(const MovingSet&) = delete;
+
+  [[nodiscard]] std::span<JointMover> movers() { return movers_; }
+  /// Takes over how far the bodies have moved.
+  void end(std::vector<double>& gone_s);
+
+ private:
+  std::span<MovingBody> bodies_;
+  std::span<const std::size_t> set_;
+  double keep_m_;
+  std::vector<JointMover> movers_;     // in the order of the set
+  std::vector<std::size_t> mover_of_;  // per body; kNoMover if it is not in the set
+
+  [[nodiscard]] JointMover::Free free_time(std::size_t mover, double duration_s) const;
+  [[nodiscard]] double free_time_beside(std::size_t mover, std::size_t stopped, double duration_s) const;
+};
+
+MovingSet::MovingSet(std::span<MovingBody> bodies, std::span<const std::size_t> set,
+                     const std::vector<RigidMotion>& motions, const std::vector<PathBall>& paths,
+                     double margin_m)
+    : bodies_(bodies), set_(set), keep_m_(kKept * margin_m), mover_of_(bodies.size(), kNoMover) {
+  for (std::size_t k = 0; k < set.size(); ++k) {
+    const std::size_t i = set[k];
+    mover_of_[i] = k;
+    movers_.push_back({.T_world_object = &bodies[i].body->T_world_object,
+                       .motion = motions[i],
+                       .duration_s = bodies[i].left_s,
+                       .path = paths[i],
+                       .free_time = [this, k](double duration_s) { return free_time(k, duration_s); },
+                       .free_time_beside =
+                           [this, k](std::size_t stopped, double duration_s) {
+                             return free_time_beside(k, stopped, duration_s);
+                           },
+                       .moved = bodies[i].moved,
+                       .limited_by = {}});
+  }
+}
+
+/// Returns how long a body moves free of contact with surfaces, bodies at rest, and members of its set. Each
+/// pair of members is tested once, from the body that spins faster: the bounds are tighter relative to the
+/// slower one.
+JointMover::Free MovingSet::free_time(std::size_t mover, double duration_s) const {
+  TreeStates trees;
+  const MovingBody& moving = bodies_[set_[mover]];
+  const RigidMotion motion = movers_[mover].motion;  // a copy: the same alignment in every run
+  const double spins = motion.angular_rad_s.squaredNorm();
+  trees.left_out.assign(moving.member_of_tree.size(), false);
+  trees.motions.assign(moving.member_of_tree.size(), {});
+  for (std::size_t tree = 0; tree < moving.member_of_tree.size(); ++tree) {
+    const std::size_t other = moving.member_of_tree[tree];
+    if (other == kNoOther || !is_active(bodies_[other])) continue;
+    if (mover_of_[other] == kNoMover) {  // their paths cannot intersect
+      trees.left_out[tree] = true;
+      continue;
+    }
+    const JointMover& beside = movers_[mover_of_[other]];
+    if (beside.has_stopped) continue;
+    const double other_spins = beside.motion.angular_rad_s.squaredNorm();
+    trees.left_out[tree] = other_spins > spins || (other_spins == spins && mover_of_[other] < mover);
+    trees.motions[tree] = beside.motion;
+  }
+  const FreeTime time = moving.probe->free_time(moving.body->T_world_object, motion, duration_s, keep_m_,
+                                                moving.left_out, trees);
+  const std::size_t limit =
+      time.limit.kind == SurfaceKind::kNothing ? kNoOther : member_of(moving, time.limit);
+  return {time, limit == kNoOther ? kNoMover : mover_of_[limit]};
+}
+
+/// Returns how long a body moves free of contact with a member that has stopped.
+double MovingSet::free_time_beside(std::size_t mover, std::size_t stopped, double duration_s) const {
+  TreeStates trees;
+  const MovingBody& moving = bodies_[set_[mover]];
+  const RigidMotion motion = movers_[mover].motion;  // as above
+  trees.left_out.resize(moving.member_of_tree.size());
+  for (std::size_t tree = 0; tree < moving.member_of_tree.size(); ++tree)
+    trees.left_out[tree] = moving.member_of_tree[tree] != set_[stopped];
+  return moving.probe
+      ->free_time(moving.body->T_world_object, motion, duration_s, keep_m_, ~bit_of(SurfaceKind::kObject),
+                  trees)
+      .free_s;
+}
+
+void MovingSet::end(std::vector<double>& gone_s) {
+  for (std::size_t k = 0; k < set_.size(); ++k) {
+    gone_s[set_[k]] = movers_[k].gone_s;
+    bodies_[set_[k]].limited_by = movers_[k].limited_by;
+  }
+}
+
+/// Moves the active bodies simultaneously, each until its first contact or for the rest of its substep
+/// (MovingBody::left_s). Bodies that touch each other stop at the time of impact. The other bodies continue,
+/// with the stopped bodies as obstacles at rest. Bodies whose paths cannot intersect are independent. A
+/// body's motion also ends when a query extends its contact-free time by less than 2 % of left_s, or after 13
+/// queries; see move_to_contact(). Sets MovingBody::limited_by.
+/// @param motions   one per body; only those of active bodies are used
+/// @param margin_m  contact margin; approaching surfaces stop at half of it
+/// @param worker    runs some of the queries on a second thread; results are the same without it; may be null
+/// @return duration of each body's motion, s; 0 for an inactive body
+std::vector<double> move_active(std::span<MovingBody> bodies, const std::vector<RigidMotion>& motions,
+                                double margin_m, WorkerThread* worker) {
+  std::vector<double> gone_s(bodies.size());
+  const std::vector<PathBall> paths = paths_of(bodies, motions, margin_m);
+  const std::vector<std::vector<std::size_t>> members = sets_that_meet(paths);
+  std::list<MovingSet> sets;
+  std::vector<std::span<JointMover>> movers;
+  for (const std::vector<std::size_t>& set : members)
+    movers.push_back(sets.emplace_back(bodies, set, motions, paths, margin_m).movers());
+  move_to_contact(movers, worker);
+  for (MovingSet& set : sets) set.end(gone_s);
+  return gone_s;
+}
+
+struct Load {
+  double support_Ns = 0.0, any_Ns = 0.0;  // greatest of a supporting contact, of any contact
+  double lift_Ns = 0.0;                   // of all contacts
+  SurfaceKind any_kind = SurfaceKind::kNothing;
+};
+
+}  // namespace
+
+void note_support(std::span<const MovingBody> bodies, const PhysicsConfig& config,
+                  const Eigen::Vector3d& up_world, const ContactSystem& system,
+                  std::vector<SubstepResult>& results) {
+  const double g = config.gravity_world_mps2.norm();
+  std::vector<Load> loads(bodies.size());
+  const auto note = [&](std::size_t body, const Body* other, const SolverContact& contact, double sign,
+                        SurfaceKind kind) {
+    if (body >= bodies.size() || !is_active(bodies[body])) return;
+    SubstepResult& result = results[body];
+    if (other != nullptr &&
+        std::find(result.touches.begin(), result.touches.end(), other) == result.touches.end())
+      result.touches.push_back(other);
+    Load& load = loads[body];
+    load.lift_Ns += sign * (contact.impulse_Ns * contact.normal + contact.friction_impulse_Ns).dot(up_world);
+    if (contact.impulse_Ns > load.any_Ns) {
+      load.any_Ns = contact.impulse_Ns;
+      load.any_kind = kind;
+    }
+    if (!(contact.impulse_Ns > load.support_Ns) || sign * contact.normal.dot(up_world) < kSupportCosine)
+      return;
+    load.support_Ns = contact.impulse_Ns;
+    result.is_held_up = true;
+    result.rests_on = kind;
+  };
+  const auto body_at = [&](std::size_t index) -> const Body* {
+    if (index == kNoOther) return nullptr;
+    return index < bodies.size() ? bodies[index].body : system.bystanders[index - bodies.size()].body;
+  };
+  for (std::size_t i = 0; i < system.contacts.size(); ++i) {
+    const SolverContact& contact = system.contacts[i];
+    note(contact.body, body_at(contact.other), contact, 1.0, system.kinds[i]);
+    note(contact.other, body_at(contact.body), contact, -1.0, SurfaceKind::kObject);
+  }
+  constexpr double kBorne = 0.9;  // fraction of the weight
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const double weight_Ns = bodies[i].mass_kg * g * bodies[i].left_s;
+    if (results[i].is_held_up || !(loads[i].lift_Ns > kBorne * weight_Ns) || !(weight_Ns > 0.0)) continue;
+    results[i].is_held_up = true;
+    results[i].rests_on = loads[i].any_kind;
+  }
+}
+
+void count_impacts(std::span<const MovingBody> bodies, const ContactSystem& system) {
+  std::vector<std::array<bool, kSurfaceKinds>> is_met(bodies.size());
+  for (std::size_t i = 0; i < system.contacts.size(); ++i) {
+    const SolverContact& contact = system.contacts[i];
+    if (!(contact.impulse_Ns > 0.0)) continue;
+    is_met[contact.body][static_cast<std::size_t>(system.kinds[i])] = true;
+    if (contact.other < bodies.size())
+      is_met[contact.other][static_cast<std::size_t>(SurfaceKind::kObject)] = true;
+  }
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    for (std::size_t kind = 0; kind < kSurfaceKinds; ++kind)
+      if (is_met[i][kind]) note_contact(static_cast<SurfaceKind>(kind), *bodies[i].report);
+}
+
 namespace {
 
 using Vec3 = Eigen::Vector3d;
