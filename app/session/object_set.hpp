@@ -1,6 +1,9 @@
 // object_set.hpp: the virtual objects of a session, with functions to place, drop, carry and simulate them.
 #pragma once
+#include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -12,18 +15,159 @@
 #include "app/objects/departure.hpp"
 #include "app/objects/object_notice.hpp"
 #include "app/objects/virtual_object.hpp"
-#include "app/session/drop_request.hpp"
+#include "app/physics/collision_queries.hpp"
+#include "app/physics/contact_system.hpp"
+#include "app/physics/depenetration.hpp"
+#include "app/physics/physics_config.hpp"
 #include "app/session/frame_scene.hpp"
-#include "app/session/object_motion.hpp"
 #include "app/session/object_overlap.hpp"
 #include "app/session/session_config.hpp"
 #include "app/session/session_room.hpp"
+#include "dynamic/surface/dynamic_surface_config.hpp"
+#include "mapping/types/intrinsics.hpp"
 #include "mapping/types/system/stage_times.hpp"
 #include "radar/batch/passes_radar.hpp"
 #include "radar/exact/cyber_radar.hpp"
+#include "radar/geometry/radar_scene.hpp"
 #include "radar/motion/proximity.hpp"
 
 namespace roomradar {
+
+/// Initial state of an object that is put into the room.
+struct ObjectState {
+  Eigen::Vector3d position_world = Eigen::Vector3d::Zero();      ///< position of the object's origin
+  std::optional<Eigen::Matrix3d> R_world_object{};               ///< unset: the object keeps its orientation
+  Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();  ///< velocity of the centre of mass
+  Eigen::Vector3d angular_velocity_world_rad_s = Eigen::Vector3d::Zero();
+};
+
+/// Contacts of one frame.
+struct ContactCounts {
+  int contacts = 0;
+  std::array<int, kSurfaceKinds> by_kind{};  ///< contacts per kind of surface touched
+};
+
+/// A radar and the total duration of its queries. Refers to both, which must outlive it.
+struct TimedRadar {
+  Radar& radar;
+  std::atomic<double>& queries_ms;  ///< incremented by each query
+};
+
+/// Returns true if config.move_every_n_frames and config.picture_every_n_frames let the object with this
+/// index be advanced in this frame.
+bool is_turn_to_move(std::size_t index, std::int64_t frame_number, const SessionConfig& config);
+
+/// An object that is moved in this frame, and the surfaces and objects that it can touch.
+struct DueObject {
+  VirtualObject* object = nullptr;
+  double waited_s = 0.0;  ///< time since the object was last advanced; may exceed config.max_advance_s
+  std::vector<SceneTree> scene{};   ///< surfaces, then the other objects
+  bool is_undisturbed = false;      ///< see AdvancedBody::is_undisturbed
+  bool was_overlapped = false;      ///< out: a surface overlapped the object, which may have been shifted
+  std::vector<SceneBody> bodies{};  ///< body of each tree of the scene; null for surfaces
+};
+
+/// Returns the body of each tree of the object's scene. Entries of surfaces are null. The other objects must
+/// be the last trees of the scene.
+std::vector<SceneBody> bodies_in(const std::vector<SceneTree>& scene,
+                                 std::span<const std::unique_ptr<VirtualObject>> objects,
+                                 const VirtualObject& object);
+
+/// Returns true if nothing new can overlap the object: only physics has moved it to its pose, and no moving
+/// surface is within 25 cm.
+bool is_undisturbed(const VirtualObject& object, std::span<const SceneTree> scene);
+
+/// Advances the objects together; see advance_together(). A carried object moves at the velocity that reaches
+/// its target after waited_s. Gravity, friction and restitution do not act on a carried object. Obstacles
+/// stop it.
+///
+/// Within the call, the dynamic surfaces near an object move from their position in the last frame to their
+/// position in this frame. They move in steps of at most 15 mm, and push the object on the way. Hence a hand
+/// that moves by up to 15 cm per frame does not pass the object between two frames. An inferred back that
+/// engulfs the object (is_engulfed()) is left out of the object's scene.
+/// @param moving    this frame's surfaces; null: no surface is known to be dynamic
+/// @param contacts  buffers; keeps impulses as initial guesses for a next call with the same objects
+/// @param counts    incremented by the contacts of this call
+void advance_objects(std::span<DueObject> due, const FrameScene* moving, const PhysicsConfig& config,
+                     const TimedRadar& timed, ContactSystem& contacts, ContactCounts& counts);
+
+/// Returns one ball around each object in the room. Inside the balls, the dynamic mesh gets full resolution.
+std::vector<FineRegion> fine_regions(std::span<const std::unique_ptr<VirtualObject>> objects);
+
+/// Sets VirtualObject::fine_cells of all objects. Objects without a region get 0.
+/// @param cells_of_region  number of cells per region, in the order of fine_regions()
+void set_fine_cells(std::span<const std::unique_ptr<VirtualObject>> objects,
+                    std::span<const std::uint32_t> cells_of_region);
+
+/// Rotates an object about the centre of its bounding box and wakes it. The rotation stops early at the first
+/// contact with a surface of the scene. Does nothing if the radar returns no usable result.
+/// @param turn_world_deg  rotation vector (axis times angle) in world axes, degrees
+void turn_until_contact(VirtualObject& object, const Eigen::Vector3d& turn_world_deg,
+                        std::span<const SceneTree> scene, CyberRadar& radar);
+
+/// Reduced height of a drop onto a surface in view, used if the object would topple or roll away when dropped
+/// from the requested height.
+inline constexpr double kGentleDrop_m = 0.05;
+
+/// Request to drop an object from above a given position or from above a level surface in view.
+struct DropRequest {
+  std::string name{};
+  std::optional<Eigen::Vector3d> position_world{};  ///< unset: above a level surface in view
+  /// Used without position_world. Set: the search takes the free level place nearest to near_world, at most
+  /// 25 cm away. Unset: the search takes the free level place nearest to the image centre.
+  std::optional<Eigen::Vector3d> near_world{};
+  /// Initial height of the object's lowest vertex above the position or surface. Without position_world, the
+  /// height is reduced to kGentleDrop_m if the object would not stay otherwise.
+  double height_m = 0.3;
+  std::optional<Eigen::Matrix3d> R_world_object{};  ///< unset: the object keeps its orientation
+};
+
+/// A drop request without a position, for which no surface has been found so far.
+struct WaitingDrop {
+  DropRequest drop;
+  std::int64_t try_at_frame = 0;  ///< the next search is in this localised frame or later
+  /// Reason why the last search failed, as the end of a sentence. Empty: not searched so far.
+  std::string why{};
+};
+
+/// Throws Error if the object's footprint (circle that it covers seen from above) has a radius above
+/// kMostFootprint_m (1 m), the largest that the search for a surface supports.
+void require_small_enough(const VirtualObject& object, const DropRequest& drop);
+
+/// Surfaces of a frame, and the queries and physics that simulate an object's fall.
+struct DropScene {
+  const SessionRoom& room;
+  const std::vector<SceneTree>& surfaces;  ///< all surfaces that the object can touch
+  const PhysicsConfig& physics;
+  CyberRadar& radar;
+};
+
+/// The frame in which find_drop_position() looks for a surface. Refers to its parts, which must outlive it.
+struct DropView {
+  const Intrinsics& camera;  ///< depth camera of the frame
+  const Eigen::Isometry3d& T_world_camera;
+  const ExpectedView& expected;
+  const FrameForeground& foreground;
+};
+
+/// Result of find_drop_position().
+struct [[nodiscard]] DropPosition {
+  /// Position of the object's origin for which its centre is above the surface point; z is the surface's
+  /// height. Unset: no surface was found.
+  std::optional<Eigen::Vector3d> position_world;
+  double height_m = 0.0;  ///< at most DropRequest::height_m
+  /// End of a sentence: why no surface was found, or why the object may not stay or is dropped from a
+  /// smaller height. Empty: the drop is as requested.
+  std::string note;
+};
+
+/// Searches the view for a level surface of the static room on which the object can stand, onto which it can
+/// fall freely and where it then stays. Dynamic surfaces count only if the scene has no static surface.
+/// Simulates a fall from drop.height_m, and from kGentleDrop_m if the object does not stay, for at most 6
+/// places. If the object stays in none of them, the first place is returned.
+/// @param view  the current frame
+DropPosition find_drop_position(const VirtualObject& object, const DropRequest& drop, const DropView& view,
+                                const DropScene& scene);
 
 /// The virtual objects of a session. Functions that take the name of an existing object throw Error if there
 /// is none of that name. Not thread safe: call all functions on the constructing thread, whose GL context is

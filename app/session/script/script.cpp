@@ -1,17 +1,170 @@
 // script.cpp: reads and writes the events file of `roomradar run --script FILE`.
 #include "app/session/script/script.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
 #include <map>
+#include <string>
+#include <string_view>
+#include <vector>
 
-#include "app/session/script/script_line.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/format_number.hpp"
 #include "mapping/types/system/overloaded.hpp"
 
 namespace roomradar {
+namespace {
+
+std::string in_quotes(std::string_view text) {
+  std::string result = "'";
+  result.append(text).append("'");
+  return result;
+}
+
+/// Keyword of a script, and its value.
+template <typename Value>
+struct Word {
+  std::string_view word;
+  Value value;
+};
+
+/// Returns the keywords as a list such as "add, place or drop".
+template <typename Value, std::size_t kCount>
+std::string listed(const std::array<Word<Value>, kCount>& words) {
+  std::string list;
+  for (std::size_t i = 0; i < kCount; ++i)
+    list.append(i == 0 ? "" : i + 1 == kCount ? " or " : ", ").append(words[i].word);
+  return list;
+}
+
+/// Returns the keyword of a value; empty if the value has none.
+template <typename Value, std::size_t kCount>
+std::string_view word_of(const std::array<Word<Value>, kCount>& words, Value value) {
+  const auto found =
+      std::find_if(words.begin(), words.end(), [&](const auto& word) { return word.value == value; });
+  return found == words.end() ? std::string_view{} : found->word;
+}
+
+/// Reads the words of one line, separated by spaces or tabs, in order. Error messages contain the file's name
+/// and the line number.
+class LineReader {
+ public:
+  /// @param where  name of the file, for error messages. `text` and `where` must outlive the reader
+  LineReader(std::string_view text, std::string_view where, int line);
+  [[nodiscard]] bool done() const { return next_ == words_.size(); }
+
+  /// Throws Error "FILE:LINE: complaint".
+  [[noreturn]] void fail(const std::string& complaint) const;
+  /// Returns the next word. Throws Error if the line has ended; `wanted` describes the expected word in the
+  /// message.
+  std::string_view word(const char* wanted);
+  /// Consumes the next word and returns true if it equals `expected`; else returns false.
+  bool take_if(std::string_view expected);
+  void expect(std::string_view expected);
+  /// Reads a finite number in lowest..highest.
+  double number(const char* wanted, double lowest, double highest);
+  double whole_number(const char* wanted, double lowest, double highest);
+  /// Returns the value of the next word. Throws Error if the word is not in `words`.
+  template <typename Value, std::size_t kCount>
+  Value choice(const char* wanted, const std::array<Word<Value>, kCount>& words) {
+    const std::string list = listed(words);
+    const std::string_view found = word((std::string(wanted) + ": " + list).c_str());
+    for (const Word<Value>& candidate : words)
+      if (candidate.word == found) return candidate.value;
+    fail("unknown word " + in_quotes(found) + "; expected " + wanted + ": " + list);
+  }
+  /// Reads three numbers, each in -limit..limit.
+  Eigen::Vector3d vector(const char* wanted, double limit);
+  void expect_end() const;
+
+ private:
+  std::string_view where_;
+  int line_;
+  std::vector<std::string_view> words_;
+  std::size_t next_ = 0;
+};
+
+LineReader::LineReader(std::string_view text, std::string_view where, int line) : where_(where), line_(line) {
+  text = text.substr(0, text.find('#'));
+  while (!text.empty()) {
+    const std::size_t begin = text.find_first_not_of(" \t\r");
+    if (begin == std::string_view::npos) break;
+    const std::size_t end = std::min(text.find_first_of(" \t\r", begin), text.size());
+    words_.push_back(text.substr(begin, end - begin));
+    text.remove_prefix(end);
+  }
+}
+
+void LineReader::fail(const std::string& complaint) const {
+  throw Error(std::string(where_) + ":" + std::to_string(line_) + ": " + complaint);
+}
+
+std::string_view LineReader::word(const char* wanted) {
+  if (done()) fail("the line ends too early; expected " + std::string(wanted));
+  return words_[next_++];
+}
+
+bool LineReader::take_if(std::string_view expected) {
+  if (done() || words_[next_] != expected) return false;
+  ++next_;
+  return true;
+}
+
+void LineReader::expect(std::string_view expected) {
+  const std::string_view found = word(in_quotes(expected).c_str());
+  if (found != expected) fail("expected " + in_quotes(expected) + ", found " + in_quotes(found));
+}
+
+double LineReader::number(const char* wanted, double lowest, double highest) {
+  const std::string_view text = word(wanted);
+  double value = 0.0;
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (fault != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
+    fail(in_quotes(text) + " is not a finite number; expected " + wanted);
+  if (value < lowest || value > highest) fail(in_quotes(text) + " is out of range for " + wanted);
+  return value;
+}
+
+double LineReader::whole_number(const char* wanted, double lowest, double highest) {
+  const double value = number(wanted, lowest, highest);
+  if (value != std::floor(value)) fail("expected a whole number: " + std::string(wanted));
+  return value;
+}
+
+Eigen::Vector3d LineReader::vector(const char* wanted, double limit) {
+  const std::string most = format_general(limit, 6);
+  const std::string wanted_each = std::string(wanted) + ", each from -" + most + " to " + most;
+  Eigen::Vector3d value;
+  for (int axis = 0; axis < 3; ++axis) value[axis] = number(wanted_each.c_str(), -limit, limit);
+  return value;
+}
+
+void LineReader::expect_end() const {
+  if (!done()) fail("unexpected " + in_quotes(words_[next_]) + ": the event is already complete");
+}
+
+}  // namespace
+
+std::string object_of(const Action& action) {
+  return std::visit(
+      [](const auto& kind) -> std::string {
+        if constexpr (requires { kind.name; })
+          return kind.name;
+        else
+          return {};
+      },
+      action);
+}
+
+bool is_due(const ScriptEvent& event, std::int64_t run_frame, double run_time_s) {
+  return event.frame ? *event.frame <= run_frame : event.time_s && *event.time_s <= run_time_s;
+}
+
 namespace {
 
 constexpr std::size_t kMaxBytes = 1U << 26U;  // a recorded day of dragging objects
