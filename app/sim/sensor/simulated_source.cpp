@@ -2,23 +2,153 @@
 #include "app/sim/sensor/simulated_source.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <future>
+#include <iterator>
+#include <span>
+#include <vector>
 
+#include "app/sim/building/building.hpp"
 #include "app/sim/room/room.hpp"
+#include "app/sim/room/room_parts.hpp"
 #include "app/sim/room/surface_appearance.hpp"
 #include "app/sim/sensor/camera_path.hpp"
 #include "app/sim/sensor/kinect_depth.hpp"
-#include "app/sim/sensor/mean_picture.hpp"
-#include "app/sim/sensor/mover_shadow.hpp"
 #include "app/sim/sensor/movers.hpp"
-#include "app/sim/sensor/simulated_room.hpp"
+#include "app/sim/sensor/sim_options.hpp"
 #include "app/sim/solids/view_caster.hpp"
+#include "mapping/types/image.hpp"
 #include "mapping/types/system/counter_random.hpp"
 
 namespace roomradar {
+
+/// Shadows of one frame's moving solids in the light of the room's first and strongest lamp.
+class MoverShadow {
+ public:
+  void prepare(std::span<const Solid> movers);
+
+  /// Returns the brightness factor of a point on the room's surface. It is about 0.75 if a moving solid
+  /// blocks the lamp, and 1 if the lamp lights the point or the room itself shadows it.
+  [[nodiscard]] float factor(const Room& room, const Eigen::Vector3d& p_world,
+                             const Eigen::Vector3d& normal_world) const;
+
+ private:
+  std::vector<Solid> movers_;
+  SolidTree tree_;
+};
+
+void MoverShadow::prepare(std::span<const Solid> movers) {
+  movers_.assign(movers.begin(), movers.end());
+  tree_ = SolidTree(movers_);
+}
+
+float MoverShadow::factor(const Room& room, const Eigen::Vector3d& p_world,
+                          const Eigen::Vector3d& normal_world) const {
+  constexpr double kLampPoints[4][2] = {{0.6, 0.2}, {-0.2, 0.6}, {-0.6, -0.2}, {0.2, -0.6}};
+  constexpr float kDarkest = 0.26F;
+  constexpr double kSkin_m = 0.001;
+  if (room.lamps.empty()) return 1.0F;
+  const Lamp& lamp = room.lamps.front();
+  if (normal_world.dot(lamp.position_world - p_world) <= 0.0) return 1.0F;
+  const Eigen::Vector3d start_world = p_world + kSkin_m * normal_world;
+  int blocked = 0;
+  for (const auto& [x, y] : kLampPoints)
+    blocked += tree_.is_blocked(movers_, start_world,
+                                lamp.position_world + lamp.radius_m * Eigen::Vector3d(x, y, 0.0));
+  if (blocked == 0 || room.tree.is_blocked(room.solids, start_world, lamp.position_world)) return 1.0F;
+  return 1.0F - kDarkest * static_cast<float>(blocked) / static_cast<float>(std::size(kLampPoints));
+}
+
 namespace {
+
+/// Mean of the added pictures, which must have the same size.
+class MeanPicture {
+ public:
+  MeanPicture(int width_px, int height_px) : sums_(width_px, height_px) {}
+
+  void add(const ColourImage& picture) {
+    ++count_;
+    for (std::size_t i = 0; i < sums_.pixels.size(); ++i) {
+      const Rgb& pixel = picture.pixels[i];
+      std::array<int, 3>& sum = sums_.pixels[i];
+      sum = {sum[0] + pixel.r, sum[1] + pixel.g, sum[2] + pixel.b};
+    }
+  }
+
+  /// Writes the mean of at least one picture.
+  void write(ColourImage& picture) const {
+    const auto mean = [this](int sum) { return static_cast<std::uint8_t>((sum + count_ / 2) / count_); };
+    std::transform(sums_.pixels.begin(), sums_.pixels.end(), picture.pixels.begin(),
+                   [&](const std::array<int, 3>& sum) {
+                     return Rgb{mean(sum[0]), mean(sum[1]), mean(sum[2])};
+                   });
+  }
+
+ private:
+  Image<std::array<int, 3>> sums_;
+  int count_ = 0;
+};
+
+/// Returns the colour with each channel multiplied by the factor, <= 1.
+Rgb dimmed(Rgb colour, float factor) {
+  const auto dim = [factor](std::uint8_t of) {
+    return static_cast<std::uint8_t>(static_cast<float>(of) * factor);
+  };
+  return factor < 1.0F ? Rgb{dim(colour.r), dim(colour.g), dim(colour.b)} : colour;
+}
+
+/// Makes the room that the options describe.
+Room room_of(const SimOptions& options) {
+  const bool crate = options.crate == CrateKind::kStays;
+  if (options.room != kBuildingRoom) return make_room(options.room, crate, options.seed, options.moved);
+  return make_building(plan_building(options.seed, options.building), options.walk, crate);
+}
+
+/// Returns the number of frames: SimOptions::frames, but at most those of an open walk. SimOptions::frames =
+/// 0 means the whole walk, or the default number without a walk.
+std::int64_t frames_of(const SimOptions& options, const Room& room) {
+  if (options.path != CameraPathKind::kScan || room.walk_step_s == 0.0)
+    return options.frames == 0 ? SimOptions{}.frames : options.frames;
+  const double walk_s = static_cast<double>(room.walk.size() - 1) * room.walk_step_s;
+  const auto whole = static_cast<std::int64_t>(std::floor(walk_s * options.rate_hz)) + 1;
+  return options.frames == 0 ? whole : std::min(options.frames, whole);
+}
+
+/// Returns the seed of the camera's sway, the moving objects and the noise. It differs between the walks of a
+/// building.
+std::uint64_t path_seed(const SimOptions& options) {
+  if (options.moved > 0.0) return hash_of(options.seed, 0x6d6f7665);
+  if (options.room != kBuildingRoom) return options.seed;
+  return hash_of(options.seed, 0x77616c6b, static_cast<std::uint64_t>(options.walk));
+}
+
+/// Selects all solids of a single room. In a building, selects the solids of the parts that may be visible
+/// from eye_world.
+/// @param solids    out: these solids
+/// @param infrared  out: Material::infrared of each
+/// @return their indices in Room::solids, ascending
+std::vector<std::size_t> visible_solids(const Room& room, const Eigen::Vector3d& eye_world,
+                                        std::vector<Solid>& solids, std::vector<float>& infrared) {
+  std::vector<std::size_t> indices;
+  solids.clear();
+  infrared.clear();
+  const auto add_range = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      solids.push_back(room.solids[i]);
+      infrared.push_back(room.materials[i].infrared);
+      indices.push_back(i);
+    }
+  };
+  if (room.parts.empty()) add_range(0, room.solids.size());
+  for (const int part : visible_parts(room, eye_world)) {
+    const RoomPart& seen = room.parts[static_cast<std::size_t>(part)];
+    add_range(seen.solids_begin, seen.solids_end);
+  }
+  return indices;
+}
 
 using Eigen::Vector3d;
 

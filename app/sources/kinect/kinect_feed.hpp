@@ -1,15 +1,73 @@
 // kinect_feed.hpp: reads and pairs a Kinect's images in a thread. Reopens the device if it stops sending
 // images.
 #pragma once
+#include <condition_variable>
+#include <deque>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "app/sources/kinect/kinect_device.hpp"
 #include "app/sources/kinect/kinect_frame.hpp"
-#include "app/sources/kinect/kinect_queue.hpp"
 
 namespace roomradar {
+
+/// Queue of frames between a Kinect's thread and the reader's thread, with the state that both share. Thread
+/// safe.
+class KinectQueue {
+ public:
+  enum class Take { kFrame, kNothing, kEnd };
+
+  /// @param config  must outlive the queue
+  explicit KinectQueue(const KinectFeedConfig& config) : config_(config) {}
+
+  // ---- called by the device's thread ----
+
+  /// Tells the reader that the device is open.
+  void announce(const KinectDevice& device);
+  /// Tells the reader that the device cannot be opened.
+  void refuse(const std::string& fault);
+  /// Tells the reader that no frame follows.
+  void end();
+  /// Queues a frame. Returns true if the queue was full and its oldest frame was dropped.
+  bool put(KinectFrame frame);
+  /// Returns an empty frame, with reused memory if available.
+  KinectFrame empty_frame();
+  /// Returns true if the reader has stopped the feed. During a replay, first waits until fewer than two
+  /// frames are queued.
+  bool must_stop();
+  /// Waits for wait_s and returns false. Returns true as soon as the reader stops the feed.
+  bool stopped_within(double wait_s);
+
+  // ---- called by the reader's thread ----
+
+  /// Waits up to config.patience_s until the device is open, and returns its factory calibration. Throws
+  /// Error if the device could not be opened in this time.
+  std::optional<KinectConstants> wait_for_opening();
+  /// Moves the next frame into `frame`. Waits up to wait_s for a frame.
+  Take take(KinectFrame& frame, double wait_s);
+  /// Stops the feed. Returns true if the device's thread ended within config.stop_s.
+  bool stop();
+
+ private:
+  /// Stores the memory of `frame` for reuse, unless the frame has an error message and thus no memory.
+  void keep_memory(KinectFrame frame);
+
+  const KinectFeedConfig& config_;
+  /// Guards the members below.
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<KinectFrame> ready_;
+  std::vector<KinectFrame> spare_;
+  std::optional<KinectConstants> constants_;
+  std::string refused_;
+  bool opened_ = false;
+  bool ended_ = false;
+  bool stop_ = false;
+};
 
 /// Reads the device in a thread for as long as the object exists. If the device sends no depth image for
 /// config.silence_s, or is disconnected, the feed calls config.say and reopens the device until it responds.
