@@ -1,15 +1,45 @@
 // object_model.cpp: makes the model of a mesh.
 #include "app/objects/object_model.hpp"
 
+#include <cstdint>
 #include <numeric>
+#include <span>
+#include <unordered_map>
 #include <utility>
 
-#include "app/models/model_triangles.hpp"
+#include "app/models/model.hpp"
 #include "app/objects/textured_lod.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
 namespace {
+
+/// Returns a model of the given triangles, in the given order, with the vertices that they use and all
+/// attributes of these vertices. The result has neither parts nor textures nor notes.
+/// @param triangles  indices into model.mesh.triangles
+Model triangles_alone(const Model& model, std::span<const std::uint32_t> triangles) {
+  const Mesh& mesh = model.mesh;
+  Model alone;
+  alone.mesh.origin = mesh.origin;
+  alone.mesh.triangles.reserve(triangles.size());
+  std::unordered_map<std::uint32_t, std::uint32_t> name;
+  for (const std::uint32_t t : triangles) {
+    Triangle triangle = mesh.triangles[t];
+    for (std::uint32_t& vertex : triangle) {
+      const auto [known, is_new] =
+          name.try_emplace(vertex, static_cast<std::uint32_t>(alone.mesh.vertices.size()));
+      if (is_new) {
+        alone.mesh.vertices.push_back(mesh.vertices[vertex]);
+        if (!mesh.normals.empty()) alone.mesh.normals.push_back(mesh.normals[vertex]);
+        if (!mesh.colours.empty()) alone.mesh.colours.push_back(mesh.colours[vertex]);
+        if (!model.texture_points.empty()) alone.texture_points.push_back(model.texture_points[vertex]);
+      }
+      vertex = known->second;
+    }
+    alone.mesh.triangles.push_back(triangle);
+  }
+  return alone;
+}
 
 std::vector<Eigen::Vector3d> corners_of(const GpuMesh& mesh) {
   std::vector<bool> is_corner(mesh.vertices().size());

@@ -16,7 +16,6 @@
 
 #include "app/sources/formats/kinect_units.hpp"
 #include "app/sources/formats/stamp_pairing.hpp"
-#include "app/sources/kinect/kinect_frame.hpp"
 #include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 
