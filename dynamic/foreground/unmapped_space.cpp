@@ -178,6 +178,158 @@ Continuation continuation_of(const UnmappedSpace& space, const std::vector<float
   return found;
 }
 
+/// True: the blocks that it entered and left are many, and on different sides.
+bool is_moving(const SurfaceMotion& motion) {
+  constexpr double kFewest = 10.0, kLeastPart = 0.02, kLeastApart = 5.0, kLeastApartOfRadius = 0.5;
+  const double blocks = motion.all.count, fewest = std::max(kFewest, kLeastPart * blocks);
+  if (motion.entered.count < fewest || motion.left.count < fewest) return false;
+  const Eigen::Vector2d apart =
+      motion.entered.sum / motion.entered.count - motion.left.sum / motion.left.count;
+  const double radius =
+      std::sqrt(std::max(motion.all.sum_of_squares / blocks - (motion.all.sum / blocks).squaredNorm(), 0.0));
+  return apart.norm() > std::max(kLeastApart, kLeastApartOfRadius * radius);
+}
+
+/// True: it is not a part of the model's surface that is seen through a gap of the model.
+bool is_apart_from_model(const SurfaceMotion& motion) {
+  constexpr double kMostBeside = 0.1;
+  return motion.beside_model <= kMostBeside * motion.all.count;
+}
+
+/// True: most of it is known to move. The rest was measured only now.
+bool goes_on_moving(const SurfaceMotion& motion) { return 2.0 * motion.walking > motion.all.count; }
+
+/// Sets UnmappedSpace::surface_of. Returns the number of surfaces.
+std::int32_t connect_surfaces(const std::vector<float>& model_m, UnmappedSpace& space) {
+  constexpr float kStep = 0.1F;  // relative difference of depth between neighbours on one surface
+  constexpr int kGap = 6;        // blocks without a measurement, or with another surface, between its parts
+  const BlockGrid& grid = space.grid;
+  const auto is_surface = [&](std::size_t i) {
+    return !(model_m[i] > 0.0F) && space.nearest[i].depth_m > 0.0F && space.nearest[i].unseen == 0;
+  };
+  space.surface_of.assign(grid.size(), -1);
+  std::int32_t surfaces = 0;
+  for (std::size_t first = 0; first < grid.size(); ++first) {
+    if (space.surface_of[first] >= 0 || !is_surface(first)) continue;
+    space.surface_of[first] = surfaces;
+    space.reached_blocks.assign(1, first);
+    while (!space.reached_blocks.empty()) {
+      const std::size_t i = space.reached_blocks.back();
+      space.reached_blocks.pop_back();
+      const int column = static_cast<int>(i % static_cast<std::size_t>(grid.columns)),
+                row = static_cast<int>(i / static_cast<std::size_t>(grid.columns));
+      const float z_m = space.nearest[i].depth_m;
+      const auto goes_on = [&](int u, int v) {
+        return u >= 0 && u < grid.columns && v >= 0 && v < grid.rows && is_surface(grid.at(u, v)) &&
+               std::abs(space.nearest[grid.at(u, v)].depth_m - z_m) <= kStep * z_m;
+      };
+      const bool is_inside = goes_on(column - 1, row) && goes_on(column + 1, row) &&
+                             goes_on(column, row - 1) && goes_on(column, row + 1);
+      const int reach = is_inside ? 1 : kGap;
+      for (int v = row - reach; v <= row + reach; ++v)
+        for (int u = column - reach; u <= column + reach; ++u) {
+          if (!goes_on(u, v) || space.surface_of[grid.at(u, v)] >= 0) continue;
+          space.surface_of[grid.at(u, v)] = surfaces;
+          space.reached_blocks.push_back(grid.at(u, v));
+        }
+    }
+    ++surfaces;
+  }
+  return surfaces;
+}
+
+constexpr std::uint8_t kRecent_frames = 15, kLeast_frames = 3;
+
+bool has_entered(const BlockSurface& seen) { return seen.grown > 0 && seen.grown <= kRecent_frames; }
+
+bool was_left(const BlockSurface& seen) {
+  return seen.depth_m > 0.0F && seen.unseen >= kLeast_frames && seen.unseen <= kRecent_frames &&
+         seen.frames >= kLeast_frames;
+}
+
+/// Returns false if no surface can move: nearly always, which spares the rest.
+bool may_anything_move(const UnmappedSpace& space) {
+  std::size_t entered = 0, left = 0, walking = 0;
+  for (const BlockSurface& seen : space.nearest) {
+    entered += has_entered(seen) ? 1 : 0;
+    left += was_left(seen) ? 1 : 0;
+    walking += seen.walks != 0 && seen.has_moved != 0 ? 1 : 0;
+  }
+  return walking > 0 || (entered > 0 && left > 0);
+}
+
+/// Adds a block that its surface entered, or that a surface left, to the motion of that surface. A block
+/// counts only if it is more than a block away from where the surface stays: the camera's pose is not more
+/// exact than that.
+void add_change(int column, int row, UnmappedSpace& space) {
+  constexpr int kReach = 8;  // from blocks that were left to the surface
+  constexpr float kSameDepth = 0.15F;
+  const BlockGrid& grid = space.grid;
+  const std::size_t i = grid.at(column, row);
+  const BlockSurface& seen = space.nearest[i];
+  const std::int32_t own = space.surface_of[i];
+  const bool is_left = own < 0;
+  const int reach = is_left ? kReach : 1;
+  std::int32_t surface = own;
+  for (int v = std::max(row - reach, 0); v <= std::min(row + reach, grid.rows - 1); ++v)
+    for (int u = std::max(column - reach, 0); u <= std::min(column + reach, grid.columns - 1); ++u) {
+      const std::size_t j = grid.at(u, v);
+      const std::int32_t other = space.surface_of[j];
+      if (other < 0 || std::abs(space.nearest[j].depth_m - seen.depth_m) > kSameDepth * seen.depth_m)
+        continue;
+      const bool is_near = std::abs(u - column) <= 1 && std::abs(v - row) <= 1;
+      if (is_near && (is_left || (other == own && !has_entered(space.nearest[j])))) return;
+      if (is_left) surface = other;
+    }
+  if (surface < 0) return;
+  SurfaceMotion& motion = space.motions[static_cast<std::size_t>(surface)];
+  (is_left ? motion.left : motion.entered).add(column, row);
+}
+
+/// Returns true if the model goes on at the depth of a block's surface, beside the block.
+bool is_beside_model(const std::vector<float>& model_m, const DepthNoise& noise, const UnmappedSpace& space,
+                     int column, int row) {
+  const BlockGrid& grid = space.grid;
+  const float z_m = space.nearest[grid.at(column, row)].depth_m;
+  const float tolerance_m = tolerance_at(z_m, noise);
+  for (int v = std::max(row - 1, 0); v <= std::min(row + 1, grid.rows - 1); ++v)
+    for (int u = std::max(column - 1, 0); u <= std::min(column + 1, grid.columns - 1); ++u) {
+      const float beside_m = model_m[grid.at(u, v)];
+      if (beside_m > 0.0F && std::abs(beside_m - z_m) <= tolerance_m) return true;
+    }
+  return false;
+}
+
+/// Marks surfaces that move as a whole as come.
+void find_moving_surfaces(const std::vector<float>& model_m, const DepthNoise& noise, UnmappedSpace& space) {
+  if (!may_anything_move(space)) return;
+  const BlockGrid& grid = space.grid;
+  space.motions.assign(static_cast<std::size_t>(connect_surfaces(model_m, space)), {});
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column) {
+      const std::size_t i = grid.at(column, row);
+      const BlockSurface& seen = space.nearest[i];
+      if (model_m[i] > 0.0F || !(seen.depth_m > 0.0F)) continue;
+      if (space.surface_of[i] >= 0) {
+        SurfaceMotion& motion = space.motions[static_cast<std::size_t>(space.surface_of[i])];
+        motion.all.add(column, row);
+        motion.walking += seen.walks != 0 && seen.has_moved != 0 ? 1.0 : 0.0;
+        motion.beside_model += is_beside_model(model_m, noise, space, column, row) ? 1.0 : 0.0;
+        if (has_entered(seen)) add_change(column, row, space);
+      } else if (was_left(seen)) {
+        add_change(column, row, space);
+      }
+    }
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    if (space.surface_of[i] < 0) continue;
+    const SurfaceMotion& motion = space.motions[static_cast<std::size_t>(space.surface_of[i])];
+    if (!is_apart_from_model(motion) || !(is_moving(motion) || goes_on_moving(motion))) continue;
+    BlockSurface& seen = space.nearest[i];
+    seen.has_come = seen.walks = 1;
+    if (is_moving(motion)) seen.frames = 0;
+  }
+}
+
 }  // namespace
 
 void warp_unmapped(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
@@ -222,6 +374,7 @@ void see_what_came(const DepthImage& depth_m, const std::vector<float>& model_m,
       space.measured_m[i] = depth.farthest_m;
       BlockSurface& seen = space.nearest[i];
       std::uint8_t& empty = space.empty[i];
+      if (seen.grown > 0 && seen.grown < kMostFrames) ++seen.grown;
       if (depth.measured == 0) {
         if (empty < kMostFrames) ++empty;
         if (seen.unseen < kMostFrames) ++seen.unseen;
@@ -232,7 +385,10 @@ void see_what_came(const DepthImage& depth_m, const std::vector<float>& model_m,
       const float tolerance_m = tolerance_at(z_m, noise);
       const bool was_there = seen.depth_m > 0.0F;
       if (was_there && std::abs(z_m - seen.depth_m) <= tolerance_m) {
-        if (seen.has_come != 0 && seen.unseen >= kEmpty_frames) seen.frames = 0;  // it has come again
+        if (seen.unseen >= kEmpty_frames) {  // it has come again
+          seen.grown = 1;
+          if (seen.has_come != 0) seen.frames = 0;
+        }
         seen.unseen = 0;
         if (seen.frames < kMostFrames) ++seen.frames;
       } else if (depth.measured >= kLeastMeasured || !was_there) {
@@ -245,12 +401,20 @@ void see_what_came(const DepthImage& depth_m, const std::vector<float>& model_m,
         const bool is_new = !was_there && empty >= kEmpty_frames;
         const bool has_come =
             depth.measured >= kLeastMeasured && !on.is_standing && (is_new || (is_same_thing && !is_behind));
-        seen = {point_world(space, column, row, z_m), z_m,           0, 0,
-                static_cast<std::uint8_t>(has_come),  seen.has_moved};
+        const std::uint8_t grown = is_new ? 1 : seen.grown;
+        seen = {point_world(space, column, row, z_m),
+                z_m,
+                0,
+                0,
+                static_cast<std::uint8_t>(has_come),
+                seen.has_moved,
+                static_cast<std::uint8_t>(has_come && seen.walks != 0),
+                grown};
       }
       empty = 0;
     }
   }
+  find_moving_surfaces(model_m, noise, space);
   find_margin(depth_m, space);  // afterwards, so that a thing that enters it is not new there
 }
 

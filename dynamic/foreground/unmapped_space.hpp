@@ -21,6 +21,25 @@ struct BlockSurface {
   std::uint8_t unseen = 0;     ///< number of frames without any measurement since
   std::uint8_t has_come = 0;   ///< 1: it is nearer than what was there, or nothing was there
   std::uint8_t has_moved = 0;  ///< 1: the last frame found it dynamic
+  std::uint8_t walks = 0;      ///< 1: it is part of a surface that was found moving as a whole
+  std::uint8_t grown = 0;  ///< frames since it got into a block in which nothing was measured; 0: it did not
+};
+
+/// How a connected surface moved within half a second, in blocks of 4 x 4 pixels.
+struct SurfaceMotion {
+  struct Blocks {
+    double count = 0.0;
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero();  ///< of columns and rows
+    double sum_of_squares = 0.0;
+    void add(int column, int row) {
+      const Eigen::Vector2d at(column, row);
+      count += 1.0, sum += at, sum_of_squares += at.squaredNorm();
+    }
+  };
+  Blocks all;                 ///< blocks in which it is
+  Blocks entered, left;       ///< blocks in which nothing was measured before, and since
+  double walking = 0.0;       ///< number of blocks of a surface that was found moving, and still is dynamic
+  double beside_model = 0.0;  ///< number of blocks beside which the model goes on at the same depth
 };
 
 /// Memory of one camera, ignored if the intrinsics change. All vectors have one value per block.
@@ -39,6 +58,9 @@ struct UnmappedSpace {
   std::vector<BlockSurface> reached;  // scratch
   std::vector<std::uint8_t> empty_before;
   std::vector<float> measured_m;  // farthest measured depth of this frame, set by see_what_came()
+  std::vector<std::int32_t> surface_of;  // connected surface of each block; -1: none
+  std::vector<std::size_t> reached_blocks;
+  std::vector<SurfaceMotion> motions;  // of the connected surfaces
 };
 
 /// Moves the memory into this frame's view. What leaves the view, or gets into a block with a model, is
@@ -50,7 +72,8 @@ void warp_unmapped(const Intrinsics& camera, const Eigen::Isometry3d& T_world_ca
 /// Updates `nearest` and `empty` from this frame, in the blocks without any surface of the model. A surface
 /// has come if nothing was measured there in the last frames, or if it goes on with one that has come and was
 /// dynamic. But where it goes on with the model, or with a surface that has been there for a while, it is a
-/// part of that, which was not measured before.
+/// part of that, which was not measured before, unless the whole surface moves: within half a second, it got
+/// into blocks on one side where nothing was, and out of blocks on the other side.
 /// @param model_m  per block: depth of the static model; 0: none
 void see_what_came(const DepthImage& depth_m, const std::vector<float>& model_m, const DepthNoise& noise,
                    UnmappedSpace& space);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <random>
 
 #include "tests/dynamic/foreground/foreground_views.hpp"
 #include "tests/support/allocation_count.hpp"
@@ -121,6 +122,44 @@ TEST(ForegroundInTime, WhatComesIntoUnmappedSpaceIsMovedAsAWhole) {
       EXPECT_GT(intersection_over_union(run.marked.dynamic_mask, box), 0.97)
           << behind_m << " m behind " << box_m << " m at " << x;
     }
+  }
+}
+
+TEST(ForegroundInTime, WhatMovesInUnmappedSpaceIsMovedBeforeItHasLeftItsPlace) {
+  // Nothing is measured behind it. It is there from the start, 300 px wide, and moves by 150 px in all.
+  Watch run;
+  const auto view = [](int x) {
+    DepthImage depth_m = unmapped_view(0.0F, 0.0F, 0);
+    fill_rectangle(depth_m, x, 100, x + 300, 300, 2.0F);
+    return depth_m;
+  };
+  for (int frame = 0; frame < 10; ++frame) run.see(view(100), mapped_below());
+  EXPECT_EQ(run.marked.counts.moved, 0U) << "it has not moved yet";
+  for (int x = 100; x <= 250; x += 6) {
+    DepthImage live_m = view(x);
+    add_noise(live_m, static_cast<unsigned>(x));
+    run.see(live_m, mapped_below());
+    if (x < 190) continue;
+    const auto thing = [&](int u, int v) { return u >= x && u < x + 300 && v >= 100 && v < 300; };
+    EXPECT_GT(intersection_over_union(run.marked.dynamic_mask, thing), 0.97) << x;
+  }
+}
+
+TEST(ForegroundInTime, WhatFlickersInUnmappedSpaceIsNotMoved) {
+  // A surface that is measured in half of its squares of 12 px, others in each frame, and whose outline
+  // jumps by 4 px to all sides.
+  Watch run;
+  std::mt19937 random(3);
+  for (int frame = 0; frame < 60; ++frame) {
+    DepthImage live_m = unmapped_view(0.0F, 0.0F, 0);
+    const int dx = static_cast<int>(random() % 9) - 4, dy = static_cast<int>(random() % 9) - 4;
+    fill_rectangle(live_m, 150 + dx, 60 + dy, 450 + dx, 300 + dy, 4.0F);
+    for (int y = 60; y < 180; y += 12)
+      for (int x = 150; x < 450; x += 12)
+        if (random() % 2 == 0) fill_rectangle(live_m, x, y, x + 12, y + 12, 0.0F);
+    add_noise(live_m, static_cast<unsigned>(frame));
+    run.see(live_m, mapped_below());
+    EXPECT_EQ(run.marked.counts.moved, 0U) << frame;
   }
 }
 
