@@ -5,6 +5,7 @@
 #include <cinttypes>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <sstream>
 #include <system_error>
@@ -53,12 +54,15 @@ Json read_settings(const fs::path& folder) {
   return json;
 }
 
-/// Returns the seconds of --commit-changes; throws Error if the value is not valid.
-double commit_after_s(const Json& value, const fs::path& folder) {
+/// Returns the seconds of --commit-changes, nothing if they were not given; throws Error if they are not
+/// valid.
+std::optional<double> commit_after_s(const Json& json, const fs::path& folder) {
   constexpr double kMost_s = 86400.0;
-  const double seconds = value.is_number() ? value.get<double>() : -1.0;
+  const char* const key = json.contains("commit_s") ? "commit_s" : "adopt_s";  // of earlier sessions
+  if (!json.contains(key)) return {};
+  const double seconds = json[key].is_number() ? json[key].get<double>() : -1.0;
   if (!(seconds > 0.0 && seconds <= kMost_s))
-    throw Error((folder / kSettings).string() + ": adopt_s = " + format_number(seconds) +
+    throw Error((folder / kSettings).string() + ": " + key + " = " + format_number(seconds) +
                 ": must be seconds, up to a day");
   return seconds;
 }
@@ -97,7 +101,7 @@ SessionRecorder::SessionRecorder(fs::path folder, const RunOptions& options, con
                {"unknown_is_solid", options.unknown_is_solid},
                {"quality", to_json(options.quality)},
                {"at_end", to_string(options.at_end)}};
-  if (options.commit_after_s) json["adopt_s"] = *options.commit_after_s;
+  if (options.commit_after_s) json["commit_s"] = *options.commit_after_s;
   write_bytes(folder_ / kSettings, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   events_.open(folder_ / kEvents);
   events_ << "# events of " << options.source << ", as applied\n" << std::flush;
@@ -184,7 +188,7 @@ RunOptions read_session(const fs::path& folder) {
     options.unknown_is_solid = json.at("unknown_is_solid").get<bool>();
     options.quality = run_quality_of(json.at("quality"), (folder / kSettings).string() + ": quality");
     options.at_end = choice_of(json, "at_end", {AtEnd::kEnd, AtEnd::kStay, AtEnd::kLoop}, folder);
-    if (json.contains("adopt_s")) options.commit_after_s = commit_after_s(json["adopt_s"], folder);
+    options.commit_after_s = commit_after_s(json, folder);
   } catch (const Json::exception& fault) {
     throw Error((folder / kSettings).string() + ": is damaged: " + fault.what());
   }

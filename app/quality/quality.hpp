@@ -46,8 +46,7 @@ struct QualityField {
   const char* unit;    ///< name of the value in help; "N" for counts
   const char* help;    ///< without the default, which the help gets from the struct
   double low = 0.0, high = 0.0;  ///< range of numbers, inclusive
-  const char* old_name = "";     ///< former name, accepted until the next version; empty: none
-  const char* old_option = "";   ///< former name on the command line; empty: none
+  const char* old_name = "";     ///< former name, which files may still have; empty: none
 };
 
 /// Return the word of a field's value, from which set_field() restores it exactly.
@@ -95,7 +94,7 @@ void visit_fields(Quality& quality, Visit&& visit) {
           "mesh_tolerance_sigmas", "--mesh-tolerance-sigmas", "X",
           "max deviation of the dynamic mesh from the measured depth, in standard deviations of the\n"
           "sensor's noise",
-          0.1, 100.0, "mesh_sigmas", "--mesh-sigmas"},
+          0.1, 100.0, "mesh_sigmas"},
       quality.mesh_tolerance_sigmas);
   visit(
       QualityField{
@@ -120,7 +119,7 @@ void visit_fields(Quality& quality, Visit&& visit) {
         quality.physics_step_s);
   visit(QualityField{"move_every_n_frames", "--move-every", "N",
                      "move each object every Nth frame, by all of the time since its last move", 1, 16,
-                     "object_turns", "--object-turns"},
+                     "object_turns"},
         quality.move_every_n_frames);
   visit(QualityField{"object_error_px", "--object-error", "PX",
                      "max deviation of an object's drawn mesh from its file's, pixels", 0.01, 100.0},
@@ -136,11 +135,11 @@ void visit_fields(Quality& quality, Visit&& visit) {
         quality.shadows);
   visit(QualityField{"shadow_every_n_frames", "--shadow-every", "N",
                      "compute the full-resolution shadow of one resting object every Nth frame", 1, 1000,
-                     "shadow_turns", "--shadow-turns"},
+                     "shadow_turns"},
         quality.shadow_every_n_frames);
   visit(QualityField{"picture_every_n_frames", "--picture-every", "N",
                      "make a picture every Nth frame, and move objects in the others; 1: both in every frame",
-                     1, 16, "picture_turns", "--picture-turns"},
+                     1, 16, "picture_turns"},
         quality.picture_every_n_frames);
 }
 

@@ -52,7 +52,7 @@ nlohmann::json settings_of(const RunOptions& options) {
   if (!options.presets.empty()) settings["presets"] = options.presets;
   if (options.max_memory_mb > 0.0) settings["max_memory_mb"] = options.max_memory_mb;
   if (options.budget_ms) settings["budget_ms"] = *options.budget_ms;
-  if (options.commit_after_s) settings["adopt_s"] = *options.commit_after_s;
+  if (options.commit_after_s) settings["commit_s"] = *options.commit_after_s;
   if (!options.calibration.empty()) settings["calibration"] = options.calibration;
   if (options.frames) settings["frames"] = {options.frames->first, options.frames->last};
   return settings;

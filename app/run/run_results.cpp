@@ -133,7 +133,7 @@ nlohmann::json results_of(const RunTotals& totals, const Session& session) {
       {"deepest_penetration_m", totals.deepest_penetration_m},
       {"needed", to_json(totals.use)},
       {"objects", objects_of(session)},
-      {"adopted", committed_changes},
+      {"committed", committed_changes},
   };
   if (session.building() != nullptr) results.update(tile_results(*session.building()));
   if (!totals.last_fault.empty()) results["last_fault"] = totals.last_fault;

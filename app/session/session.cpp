@@ -128,7 +128,7 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
 
   begin(FramePart::kLocate);
   const Frame& frame = times.timed("reduce", [&]() -> const Frame& { return with_depth_reduced(whole); });
-  if (map_updater_ && map_updater_->is_due(frame)) times.timed("adopt", [&] { renew_room(); });
+  if (map_updater_ && map_updater_->is_due(frame)) times.timed("commit", [&] { renew_room(); });
   if (building_ && times.timed("tiles", [&] { return building_->begin_frame(whole.stamp_s); }))
     scene_.room_changed();
   while (building_ && building_->has_fault()) objects_.notify(building_->take_fault());

@@ -35,7 +35,7 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Processes one frame, from sensor data to picture. Stages timed: reduce adopt tiles locate expected
+  /// Processes one frame, from sensor data to picture. Stages timed: reduce commit tiles locate expected
   /// foreground changes mesh place physics radar light compose frame. Stage contact is the time from the call
   /// until all objects have been advanced.
   FrameResult step(const Frame& frame, StageTimes& times);

@@ -18,7 +18,7 @@ void save_changed_map(SavedMap& map, std::size_t changes, const std::filesystem:
     renew_texture(earlier, map);
     map.coverage_png = survey_coverage(map.octree.load(), map.mesh, map.trajectory).picture_png;
   }
-  map.info.settings["adopted"] = std::to_string(changes);
+  map.info.settings["committed"] = std::to_string(changes);
   save_map(folder, map);
 }
 

@@ -175,7 +175,6 @@ void add_sweep_options(CLI::App& command, TradeOptions& options) {
 }
 
 void add_result_options(CLI::App& command, TradeOptions& options) {
-  add_old_flag(command, "--table1", "--compare-published");
   command.add_flag("--compare-published", options.compare_published,
                    "only compare the published radar's three rows with this machine (default: off)");
   command

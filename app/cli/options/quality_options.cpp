@@ -36,8 +36,6 @@ template <typename Quality>
 void add_field_options(CLI::App& command, FieldWords& fixed) {
   const Quality defaults;
   visit_fields(defaults, [&](const QualityField& field, const auto& value) {
-    const std::string old_option = field.old_option;
-    if (!old_option.empty()) add_old_name(command, old_option, field.option);
     command
         .add_option_function<std::string>(
             field.option,

@@ -43,7 +43,6 @@ void add_world_options(CLI::App& command, RunOptions& options) {
   add_choice(command, "--unknown", options.unknown_is_solid, {{"free", false}, {"solid", true}},
              "space that the prescan has not observed: objects are stopped (solid; needs --surfaces map) or\n"
              "fall through it (free; for tests of falling through) (default: solid with --surfaces map)");
-  add_old_name(command, "--adopt", "--commit-changes");
   command
       .add_option(
           "--commit-changes", options.commit_after_s,
@@ -87,7 +86,6 @@ void add_picture_options(CLI::App& command, RunOptions& options) {
           "folder for composed pictures and masks of dynamic pixels as PNG, named by the source's frame\n"
           "number, followed by the run's if the frame is repeated (default: not written)")
       ->type_name("DIR");
-  add_old_name(command, "--pictures-every", "--pictures-stride");
   command
       .add_option("--pictures-stride", options.pictures_stride,
                   "write pictures of every Nth frame (default: 10)")

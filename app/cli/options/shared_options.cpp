@@ -2,7 +2,6 @@
 #include "app/cli/options/shared_options.hpp"
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
 
 #include "app/cli/options/option_checks.hpp"
 #include "mapping/types/system/error.hpp"
@@ -82,31 +81,6 @@ void add_report_option(CLI::App& command, std::string& report) {
       .add_option("--report", report,
                   "write settings, times, memory and results as JSON (default: not written)")
       ->type_name("FILE");
-}
-
-namespace {
-
-void pass_on(CLI::App& command, const std::string& old_name, const std::string& name,
-             const std::string& value) {
-  std::fprintf(stderr, "roomradar: %s is now %s; the old name will go in the next version\n",
-               old_name.c_str(), name.c_str());
-  command.get_option(name)->add_result(value);
-}
-
-}  // namespace
-
-void add_old_name(CLI::App& command, const std::string& old_name, const std::string& name) {
-  command
-      .add_option_function<std::string>(
-          old_name,
-          [&command, old_name, name](const std::string& word) { pass_on(command, old_name, name, word); })
-      ->group("");
-}
-
-void add_old_flag(CLI::App& command, const std::string& old_name, const std::string& name) {
-  command
-      .add_flag_callback(old_name, [&command, old_name, name] { pass_on(command, old_name, name, "true"); })
-      ->group("");
 }
 
 }  // namespace roomradar

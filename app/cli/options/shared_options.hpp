@@ -33,13 +33,4 @@ void add_ui_scale_option(CLI::App& command, std::optional<double>& ui_scale);
 void add_processes_option(CLI::App& command, int& processes);
 void add_report_option(CLI::App& command, std::string& report);
 
-/// Adds a hidden option with the former name of an option that takes one value. When the hidden option is
-/// used, prints the new name to stderr and passes the value to the option `name`, which checks it.
-///
-/// Call before adding `name`: CLI11 processes options in the order in which they were added.
-void add_old_name(CLI::App& command, const std::string& old_name, const std::string& name);
-
-/// Adds a hidden flag with the former name of a flag, as add_old_name() does.
-void add_old_flag(CLI::App& command, const std::string& old_name, const std::string& name);
-
 }  // namespace roomradar

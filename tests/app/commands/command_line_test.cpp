@@ -269,20 +269,23 @@ TEST_F(CommandLine, ASessionRecordedWithFormerNamesReplaysTheSame) {
                            "frame 3 quality object_turns 3 picture_turns 2 mesh_sigmas 2\n";
   const Outcome played =
       roomradar("run 'sim:table?frames=12&width=160&path=view&seed=2' --poses recorded --map " + map() +
-                " --shadow-every 4 --script " + script.string() + " --record-session " + session.string());
+                " --shadow-every 4 --commit-changes 9 --script " + script.string() + " --record-session " +
+                session.string());
   ASSERT_EQ(played.status, 0) << played.out;
+  const auto rename = [](std::string& text, const std::string& name, const std::string& old_name) {
+    ASSERT_NE(text.find(name), std::string::npos) << name << " is not in " << text;
+    EXPECT_EQ(text.find(old_name), std::string::npos) << text;
+    for (std::size_t at = 0; (at = text.find(name)) != std::string::npos;)
+      text.replace(at, name.size(), old_name);
+  };
   for (const char* file : {"session.json", "events.txt"}) {
     std::string text = read_text(session / file);
     const std::map<std::string, std::string> old_names{{"mesh_tolerance_sigmas", "mesh_sigmas"},
                                                        {"move_every_n_frames", "object_turns"},
                                                        {"shadow_every_n_frames", "shadow_turns"},
                                                        {"picture_every_n_frames", "picture_turns"}};
-    for (const auto& [name, old_name] : old_names) {
-      ASSERT_NE(text.find(name), std::string::npos) << name << " is not in " << text;
-      EXPECT_EQ(text.find(old_name), std::string::npos) << text;
-      for (std::size_t at = 0; (at = text.find(name)) != std::string::npos;)
-        text.replace(at, name.size(), old_name);
-    }
+    for (const auto& [name, old_name] : old_names) rename(text, name, old_name);
+    if (file == std::string("session.json")) rename(text, "commit_s", "adopt_s");
     std::ofstream(session / file) << text;
   }
   const Outcome replayed = roomradar("run " + session.string());
@@ -464,7 +467,7 @@ TEST_F(CommandLine, WhatCameGoesIntoANewMapAndTheOldOneStaysAsItIs) {
   };
   const auto before = bytes_of(map());
   const std::string changed = (folder_ / "changed").string();
-  const fs::path report_path = folder_ / "adopt.json";
+  const fs::path report_path = folder_ / "commit.json";
   const Outcome ran = roomradar("run 'sim:table?frames=60&rate=10&width=160&path=view&crate=comes' --map " +
                                 map() + " --poses recorded --commit-changes 0.8 --save-map " + changed +
                                 " --report " + report_path.string());
@@ -474,9 +477,9 @@ TEST_F(CommandLine, WhatCameGoesIntoANewMapAndTheOldOneStaysAsItIs) {
   EXPECT_TRUE(fs::exists(fs::path(changed) / "texture.jpg"));  // carried over to the changed surface
   EXPECT_EQ(roomradar("map export " + changed + " " + (folder_ / "changed.glb").string()).status, 0);
   const nlohmann::json report = nlohmann::json::parse(read_text(report_path));
-  ASSERT_EQ(report["adopted"].size(), 1U) << report["adopted"].dump(2);
-  EXPECT_EQ(report["adopted"][0]["change"], "came");
-  EXPECT_GT(report["adopted"][0]["time_s"], 3.7);
+  ASSERT_EQ(report["committed"].size(), 1U) << report["committed"].dump(2);
+  EXPECT_EQ(report["committed"][0]["change"], "came");
+  EXPECT_GT(report["committed"][0]["time_s"], 3.7);
   EXPECT_TRUE(report["stages"].contains("changes"));
   const Outcome diff = roomradar("map diff " + map() + " " + changed);
   EXPECT_EQ(diff.status, 0) << diff.out;
@@ -596,48 +599,6 @@ TEST_F(CommandLine, WrongUsageIsStatusTwo) {
   expect_fault(roomradar(run + " --pictures-stride 3"), 2, "--pictures");
   EXPECT_NE(roomradar(run + " --preset fast --presets /no/p.json").out.find("/no/p.json"), std::string::npos);
   EXPECT_FALSE(fs::exists(folder_ / "unused"));
-}
-
-TEST_F(CommandLine, FormerNamesOfOptionsWorkAndSaySo) {
-  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
-  const std::string run = "run 'sim:table?frames=3&width=160&path=view' --poses recorded --map " + map();
-  const fs::path pictures = folder_ / "old_pictures", report_path = folder_ / "old_options.json";
-  const Outcome outcome =
-      roomradar(run + " --object-turns 2 --picture-turns=3 --shadow-turns 4 --mesh-sigmas 1.5 --adopt 9 " +
-                "--pictures " + pictures.string() + " --pictures-every 1 --report " + report_path.string());
-  ASSERT_EQ(outcome.status, 0) << outcome.out;
-  const std::map<std::string, std::string> new_names{
-      {"--object-turns", "--move-every"},   {"--picture-turns", "--picture-every"},
-      {"--shadow-turns", "--shadow-every"}, {"--mesh-sigmas", "--mesh-tolerance-sigmas"},
-      {"--adopt", "--commit-changes"},      {"--pictures-every", "--pictures-stride"}};
-  const std::string help = roomradar("run --help").out, manual = roomradar("--manual").out;
-  for (const auto& [old_name, name] : new_names) {
-    const std::string said =
-        "roomradar: " + old_name + " is now " + name + "; the old name will go in the next version\n";
-    EXPECT_NE(outcome.out.find(said), std::string::npos) << outcome.out;
-    EXPECT_EQ(help.find(old_name), std::string::npos) << old_name;
-    EXPECT_NE(help.find(name), std::string::npos) << name;
-    EXPECT_EQ(manual.find("\\-\\-" + old_name.substr(2)), std::string::npos) << old_name;
-  }
-  const nlohmann::json settings = nlohmann::json::parse(read_text(report_path))["settings"];
-  EXPECT_EQ(settings["move_every_n_frames"], 2);
-  EXPECT_EQ(settings["picture_every_n_frames"], 3);
-  EXPECT_EQ(settings["shadow_every_n_frames"], 4);
-  EXPECT_EQ(settings["mesh_tolerance_sigmas"], 1.5);
-  EXPECT_EQ(settings["adopt_s"], 9);
-  for (const char* frame : {"000000", "000001", "000002"})
-    EXPECT_TRUE(fs::exists(pictures / (std::string(frame) + ".moved.png"))) << frame;
-  // The checks are those of the new name.
-  expect_fault(roomradar(run + " --object-turns 0"), 2, "--move-every 0");
-  expect_fault(roomradar(run + " --adopt nan"), 2, "86400");
-  expect_fault(roomradar(run + " --pictures-every 3"), 2, "--pictures-stride: used only with --pictures");
-  expect_fault(roomradar(run + " --object-turns 010"), 2, "without leading zeros");
-  EXPECT_EQ(roomradar(run + " --adopt 1 --commit-changes 2").status, 2);
-  EXPECT_EQ(roomradar("prescan sim:table --map " + map() + " --adopt 1").status, 2);
-  const Outcome table = roomradar("trade --table1 --csv " + (folder_ / "t.csv").string());
-  expect_fault(table, 2, "--csv: used only for a sweep, not with --compare-published");
-  expect_fault(table, 2, "--table1 is now --compare-published; the old name will go in the next version");
-  EXPECT_EQ(roomradar("trade --help").out.find("--table1"), std::string::npos);
 }
 
 TEST_F(CommandLine, TheManualHasTheOrderOfTheHelpAndNoneOfTheParsersRanges) {

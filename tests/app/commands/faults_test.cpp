@@ -199,7 +199,7 @@ TEST_F(DeferredErrors, ARunThatIsCutShortSavesAndReportsWhatCameBefore) {
   std::ifstream file(at("report.json"));
   const auto report = nlohmann::json::parse(file);
   EXPECT_GT(report.at("frames_read").get<int>(), 0);
-  EXPECT_TRUE(report.contains("adopted"));
+  EXPECT_TRUE(report.contains("committed"));
   EXPECT_NE(report.at("fault").get<std::string>().find(disk().string()), std::string::npos);
 }
 
