@@ -143,14 +143,16 @@ int replay(const FallthroughOptions& options, const RoomScan& scan) {
   return 0;
 }
 
-/// The rooms of a run, on the GPU.
+/// The rooms of a run, on the GPU, and the radar of its drops and pictures.
 struct RoomsInUse {
   GlContext context;
   Rooms rooms;
+  std::unique_ptr<Radar> radar;
 };
 std::unique_ptr<RoomsInUse> rooms_of(const FallthroughOptions& options, const RoomScan& scan, int threads) {
   auto in_use = std::make_unique<RoomsInUse>();
   in_use->rooms = map_rooms(in_use->context, choose_rooms(options.random_rooms), scan, threads);
+  in_use->radar = make_radar({.mode = options.radar}, in_use->context);
   return in_use;
 }
 
@@ -178,8 +180,7 @@ void publish(const FallthroughOptions& options, const std::vector<ScenarioRow>& 
   faults.attempt([&] { write_csv(rows, options.csv); });
   faults.attempt([&] {
     if (options.html.empty()) return;
-    const std::unique_ptr<Radar> radar = make_radar({.mode = options.radar}, in_use.context);
-    write_page(rows, about, picture_failures(in_use.rooms, *radar, rows, options.seed), options.html);
+    write_page(rows, about, picture_failures(in_use.rooms, *in_use.radar, rows, options.seed), options.html);
   });
   faults.attempt([&] { write_report(report, options.report); });
   faults.throw_first();
@@ -226,10 +227,9 @@ int run(const FallthroughOptions& options) {
   if (!options.jobs.empty()) return run_jobs(options, report);
 
   const auto in_use = report.times.timed("prescan", [&] { return rooms_of(options, scan, threads); });
-  const std::unique_ptr<Radar> radar = make_radar({.mode = options.radar}, in_use->context);
   DeferredErrors faults;  // earlier results are written all the same
   const std::vector<ScenarioRow> rows = report.times.timed(
-      "scenarios", [&] { return run_scenarios(in_use->rooms, *radar, options, threads, faults); });
+      "scenarios", [&] { return run_scenarios(in_use->rooms, *in_use->radar, options, threads, faults); });
   if (rows.empty()) faults.throw_first();
   publish(options, rows, *in_use, report, faults);
   return 0;

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "app/sources/datasets/numbered_files.hpp"
+#include "app/sources/datasets/text_lists.hpp"
 #include "app/sources/formats/camera_rig_json.hpp"
 #include "app/sources/formats/image_file.hpp"
 #include "app/sources/formats/parse_numbers.hpp"
@@ -23,8 +24,6 @@ namespace roomradar {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::uintmax_t kMaxTrajectory_bytes = 1U << 30U;
 
 /// Returns the first file, by name, that ends in `ending`; empty if there is none.
 fs::path file_ending(const fs::path& folder, std::string_view ending) {
@@ -43,20 +42,15 @@ fs::path intrinsics_file(const fs::path& folder) {
 /// Calls use(numbers, where) per line that is not empty and no comment.
 template <typename Use>
 void for_each_numbers(const fs::path& path, const Use& use) {
-  std::istringstream lines(read_bytes(path, "a trajectory", kMaxTrajectory_bytes));
-  int line_number = 0;
-  for (std::string line; std::getline(lines, line);) {
-    const std::string where = path.string() + ", line " + std::to_string(++line_number);
+  for_each_line(path, [&](std::string_view line, const std::string& where) {
     std::vector<double> numbers;
-    const auto words = split_words(line);
-    if (words.empty() || words[0].starts_with('#')) continue;
-    for (const std::string_view word : words) {
+    for (const std::string_view word : split_words(line)) {
       const auto number = parse_number(word);
       if (!number) throw Error(where + ": '" + std::string(word.substr(0, 40)) + "' is not a number");
       numbers.push_back(*number);
     }
     use(numbers, where);
-  }
+  });
 }
 
 /// A pose of a .log file. Its heading's first number is the frame's.

@@ -6,11 +6,12 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <string>
+#include <utility>
 
 #include "app/sources/datasets/arkit_axes.hpp"
 #include "app/sources/datasets/numbered_files.hpp"
+#include "app/sources/datasets/text_lists.hpp"
 #include "app/sources/formats/image_file.hpp"
 #include "app/sources/formats/nominal_rig.hpp"
 #include "app/sources/formats/parse_numbers.hpp"
@@ -24,30 +25,28 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t kMaxCsv_bytes = 1U << 30U;
-
 /// Calls use(numbers) per line with at least `count` numbers. A first line without numbers is a heading.
 /// @return the number of other lines, such as one that was being written when the app ended
 template <typename Use>
 std::size_t for_each_row(const fs::path& path, std::size_t count, const Use& use) {
-  std::istringstream lines(read_bytes(path, "a list of numbers", kMaxCsv_bytes));
   std::size_t bad = 0;
-  bool is_first = true;
-  for (std::string line; std::getline(lines, line); is_first = false) {
-    std::replace(line.begin(), line.end(), ',', ' ');
+  bool is_at_first = true;
+  for_each_line(path, [&](std::string_view line, const std::string& /*where*/) {
+    std::string text(line);
+    std::replace(text.begin(), text.end(), ',', ' ');
     std::vector<double> numbers;
-    const auto words = split_words(line);
+    const auto words = split_words(text);
     for (const std::string_view word : words) {
       const auto number = parse_number(word);
       if (!number) break;
       numbers.push_back(*number);
     }
-    if (words.empty() || (is_first && numbers.empty())) continue;
-    if (numbers.size() < words.size() || numbers.size() < count)
-      ++bad;
-    else
+    const bool is_heading = std::exchange(is_at_first, false) && numbers.empty();
+    if (numbers.size() == words.size() && numbers.size() >= count)
       use(numbers);
-  }
+    else if (!is_heading)
+      ++bad;
+  });
   return bad;
 }
 
@@ -170,7 +169,7 @@ RecordingFacts index_stray_scanner(const fs::path& folder) {
     if (!fs::exists(confidence_path)) return;
     Image<std::uint8_t> confidence;
     const std::string name = confidence_path.string();
-    decode_grey_png(read_bytes(confidence_path, "an image", kMaxCsv_bytes), name, confidence);
+    decode_grey_png(read_bytes(confidence_path, "an image"), name, confidence);
     remove_unsure(confidence, name, depth_m);
   };
   facts.read_colour = [video, numbers](std::size_t frame, ColourImage& image) {
