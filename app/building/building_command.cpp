@@ -102,22 +102,24 @@ void add_options(CLI::App& command, BuildingOptions& options) {
       ->required()
       ->type_name("LIST");
   command
-      .add_option("--resolution", options.grid.resolution_m, "edge of the smallest voxels, m (default: 0.01)")
+      .add_option("--resolution", options.grid.resolution_m,
+                  with_default("edge of the smallest voxels, m", options.grid.resolution_m))
       ->check(within(0.001, 1.0, "metres"))
       ->type_name("M");
   command
-      .add_option("--tile-edge", options.grid.edge_voxels,
-                  "edge of a tile in voxels, a power of two from 64 to 4096 (default: 512)")
+      .add_option(
+          "--tile-edge", options.grid.edge_voxels,
+          with_default("edge of a tile in voxels, a power of two from 64 to 4096", options.grid.edge_voxels))
       ->type_name("N");
   command
       .add_option("--deviation", options.deviation_m,
-                  "how far simplification may move the surface, m (default: 0.002)")
+                  with_default("how far simplification may move the surface, m", options.deviation_m))
       ->check(within(0.0, 0.1, "metres"))
       ->type_name("M");
   add_poses_option(
       command, options.poses,
       "estimate the camera poses, with those of the recordings as a prior (auto) or without them\n"
-      "(tracked), or use those of the recordings, which must be in one world (recorded) (default: auto)");
+      "(tracked), or use those of the recordings, which must be in one world (recorded)");
   add_processes_option(command, options.processes);
   add_report_option(command, options.report);
 }

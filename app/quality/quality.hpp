@@ -58,6 +58,10 @@ std::string word_of(RadarMode value);
 /// Returns the words of a type such as "a|b|c" for a sentence: "a, b or c". Other text is unchanged.
 std::string words_of_choice(std::string_view type);
 
+inline constexpr const char* kRadarHelp =
+    "distance to contact: exact; between bounds about a pixel apart (sampled); or, between such\n"
+    "bounds, from Cyber Radar's two rendered depth passes (passes)";
+
 /// Calls visit(QualityField, field) for each field, in the order of files and help.
 template <typename Quality, typename Visit>
 requires std::is_same_v<std::remove_const_t<Quality>, ScanQuality>
@@ -102,12 +106,7 @@ void visit_fields(Quality& quality, Visit&& visit) {
           "make every dynamic pixel near virtual objects a vertex, which helps if depth has less noise\n"
           "than a Kinect's"},
       quality.fine_mesh);
-  visit(
-      QualityField{
-          "radar", "--radar", "exact|sampled|passes",
-          "distance to contact: exact; between bounds about a pixel apart (sampled); or, between such\n"
-          "bounds, from Cyber Radar's two rendered depth passes (passes)"},
-      quality.radar);
+  visit(QualityField{"radar", "--radar", "exact|sampled|passes", kRadarHelp}, quality.radar);
   visit(
       QualityField{"radar_px", "--radar-px", "N",
                    "pixels along the longer side of the object's outline; the exact radar's results do not\n"

@@ -53,8 +53,7 @@ void add_input_options(CLI::App& command, InputOptions& options) {
   add_choice<StampChoice>(
       command, "--stamps", options.stamps, stamp_words(),
       "times of the recorded images: their stamps, repaired where they cannot be right (auto);\n"
-      "times of reception; image numbers at 30 per second (index); or stamps in this unit\n"
-      "(default: auto)");
+      "times of reception; image numbers at 30 per second (index); or stamps in this unit");
   command
       .add_option("--depth-topic", options.depth_topic,
                   "topic of a ROS recording with the depth images (default: one that is registered to\n"

@@ -22,11 +22,11 @@ void add_recorded_room_options(CLI::App& command, FallthroughOptions& options) {
       ->type_name("DIR");
   add_poses_option(
       command, options.poses,
-      "localise the frame's camera in the map (auto, tracked), or use the recording's pose (recorded)\n"
-      "(default: auto)");
+      "localise the frame's camera in the map (auto, tracked), or use the recording's pose (recorded)");
   add_frames_option(command, options.frames);
   add_calibration_option(command, options.calibration);
-  command.add_option("--cell", options.cell_m, "edge of the grid's cells, metres (default: 0.1)")
+  command
+      .add_option("--cell", options.cell_m, with_default("edge of the grid's cells, metres", options.cell_m))
       ->check(within(0.01, 10.0, "metres"))
       ->type_name("M");
   command
@@ -38,20 +38,20 @@ void add_recorded_room_options(CLI::App& command, FallthroughOptions& options) {
 void add_radar_option(CLI::App& command, FallthroughOptions& options) {
   std::map<std::string, RadarMode> words;
   for (const RadarMode mode : kRadarModes) words.emplace(to_string(mode), mode);
-  add_choice<RadarMode>(
-      command, "--radar", options.radar, words,
-      "distance to contact: exact; between bounds about a pixel apart (sampled); or, between such\n"
-      "bounds, from Cyber Radar's two rendered depth passes (passes) (default: exact)");
+  add_choice<RadarMode>(command, "--radar", options.radar, words, kRadarHelp);
 }
 
 void add_simulated_room_options(CLI::App& command, FallthroughOptions& options) {
-  command.add_option("--scenarios", options.scenarios, "number of scenarios (default: 200)")
+  command
+      .add_option("--scenarios", options.scenarios, with_default("number of scenarios", options.scenarios))
       ->check(whole_within(1, 1'000'000))
       ->type_name("N");
-  command.add_option("--seed", options.seed, "seed of the scenarios (default: 1)")->type_name("N");
+  command.add_option("--seed", options.seed, with_default("seed of the scenarios", options.seed))
+      ->type_name("N");
   command
       .add_option("--random-rooms", options.random_rooms,
-                  "number of randomly furnished rooms, in addition to table, shelf and wall (default: 3)")
+                  with_default("number of randomly furnished rooms, in addition to table, shelf and wall",
+                               options.random_rooms))
       ->check(whole_within(0, 1000))
       ->type_name("N");
   command
@@ -82,7 +82,9 @@ void add_simulated_room_options(CLI::App& command, FallthroughOptions& options) 
           "and join their results: the same table, except for times, which are less accurate because\n"
           "jobs run side by side (default: this process runs all scenarios)")
       ->type_name("DIR");
-  command.add_option("--job-size", options.job_size, "scenarios per job of --jobs (default: 100)")
+  command
+      .add_option("--job-size", options.job_size,
+                  with_default("scenarios per job of --jobs", options.job_size))
       ->check(whole_within(1, 1'000'000))
       ->type_name("N");
   add_processes_option(command, options.processes);
@@ -148,27 +150,33 @@ void add_sweep_options(CLI::App& command, TradeOptions& options) {
   const std::map<std::string, std::string> commands{{"prescan", "prescan"}, {"run", "run"}};
   add_choice(command, "--only", options.only, commands, "measure only this command (default: both)");
   command
-      .add_option("--settings", options.settings,
-                  "number of settings per command, in addition to the default (default: 30)")
+      .add_option(
+          "--settings", options.settings,
+          with_default("number of settings per command, in addition to the default", options.settings))
       ->check(whole_within(1, 10'000))
       ->type_name("N");
-  command.add_option("--repeats", options.repeats, "measurements per setting and scene (default: 2)")
+  command
+      .add_option("--repeats", options.repeats,
+                  with_default("measurements per setting and scene", options.repeats))
       ->check(whole_within(1, 1000))
       ->type_name("N");
   command
       .add_option("--objects", options.objects,
-                  "virtual objects in a run, except in settings that change their number (default: 1)")
+                  with_default("virtual objects in a run, except in settings that change their number",
+                               options.objects))
       ->check([](const std::string& text) {
         const bool is_one = text == "1" || text == "5" || text == "20";
         return is_one ? std::string() : "must be 1, 5 or 20, not " + text;
       })
       ->type_name("N");
-  command.add_option("--seed", options.seed, "seed of the settings and of their order (default: 1)")
+  command
+      .add_option("--seed", options.seed,
+                  with_default("seed of the settings and of their order", options.seed))
       ->type_name("N");
   const std::map<std::string, std::string> times{{"wall", "wall"}, {"cpu", "cpu"}};
   add_choice(command, "--time", options.time, times,
              "compare settings by wall-clock time (wall) or, on a busy machine, by the CPU time of all\n"
-             "threads (cpu) (default: wall)");
+             "threads (cpu)");
   command.add_flag(
       "--quick", options.quick,
       "use few frames of small images: a functional test, not a basis for choices (default: off)");

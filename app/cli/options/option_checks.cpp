@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "mapping/types/system/classic_locale.hpp"
+#include "mapping/types/system/format_number.hpp"
 
 namespace roomradar {
 
@@ -30,6 +31,17 @@ CLI::Validator whole_within(std::int64_t low, std::int64_t high) {
                ", not " + text;
       },
       "", "whole_within");
+}
+
+std::string with_default(const std::string& help, const std::string& word) {
+  constexpr std::size_t kWidth = 100;
+  const std::string note = "(default: " + word + ")";
+  const std::size_t last_line = help.size() - (help.rfind('\n') + 1);  // npos + 1 is 0
+  return help + (last_line + 1 + note.size() > kWidth ? "\n" : " ") + note;
+}
+
+std::string with_default(const std::string& help, double value) {
+  return with_default(help, format_readable(value, 3));
 }
 
 void refuse_given(const CLI::App& command, const std::vector<std::string>& names, const char* why) {

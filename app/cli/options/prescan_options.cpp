@@ -43,11 +43,11 @@ void add_options(CLI::App& command, PrescanOptions& options) {
       command, "--lost-signal", options.lost_signal,
       {{"none", {false, false}}, {"flash", {true, false}}, {"bell", {false, true}}, {"both", {true, true}}},
       "what the window does when the camera is lost: the picture's frame flashes, the terminal's\n"
-      "bell rings, or both (default: flash)");
-  add_poses_option(command, options.poses,
-                   "estimate the camera poses, with those of the recording, if any, as a prior on the motion that\n"
-                   "depth verifies (auto) or without them (tracked), or use those of the recording (recorded)\n"
-                   "(default: auto)");
+      "bell rings, or both");
+  add_poses_option(
+      command, options.poses,
+      "estimate the camera poses, with those of the recording, if any, as a prior on the motion that\n"
+      "depth verifies (auto) or without them (tracked), or use those of the recording (recorded)");
   add_frames_option(command, options.frames);
   add_calibration_option(command, options.calibration);
   add_input_options(command, options.input);
@@ -61,8 +61,10 @@ void add_options(CLI::App& command, PrescanOptions& options) {
   command
       .add_option(
           "--max-fused", options.max_fused,
-          "fuse at most N frames, so that the map is ready sooner; of a longer scan, frames whose view\n"
-          "hardly differs from the last fused one's are left out; 0: no limit (default: 2000)")
+          with_default(
+              "fuse at most N frames, so that the map is ready sooner; of a longer scan, frames whose view\n"
+              "hardly differs from the last fused one's are left out; 0: no limit",
+              options.max_fused))
       ->check(whole_within(0, 1'000'000'000))
       ->type_name("N");
   command
@@ -74,7 +76,7 @@ void add_options(CLI::App& command, PrescanOptions& options) {
   add_choice<bool>(
       command, "--texture", options.texture, {{"on", true}, {"off", false}},
       "bake a texture of the room's surface from the best frames; takes some seconds and 0.2 GB, and\n"
-      "is left out where --max-memory has no room for it (default: on)");
+      "is left out where --max-memory has no room for it");
   command.add_flag(
       "--resume", options.resume,
       "continue the interrupted scan of this map (DIR.unfinished); if there is none, extend the\n"
@@ -82,8 +84,10 @@ void add_options(CLI::App& command, PrescanOptions& options) {
   command
       .add_option(
           "--checkpoint-every", options.checkpoint_every_s,
-          "seconds between checkpoints, 24 times as long while frames are fused; 0: none, so the scan "
-          "cannot be resumed (default: 2.5)")
+          with_default(
+              "seconds between checkpoints, 24 times as long while frames are fused; 0: none, so the scan "
+              "cannot be resumed",
+              options.checkpoint_every_s))
       ->check(within(0.0, 86400.0, "seconds"))
       ->type_name("S");
   command

@@ -23,6 +23,7 @@ namespace roomradar {
 struct LostSignal {
   bool flashes = true;  ///< a red border flashes round the image
   bool rings = false;   ///< the terminal's bell rings once
+  friend bool operator==(const LostSignal&, const LostSignal&) = default;
 };
 
 struct PrescanOptions {

@@ -24,14 +24,6 @@ std::string word_in_help(const Value& value) {
     return word_of(value);
 }
 
-/// Returns the help text with "(default: WORD)" at its end, on a new line if the last one has no room for it.
-std::string with_default(const std::string& help, const std::string& word) {
-  constexpr std::size_t kWidth = 100;
-  const std::string note = "(default: " + word + ")";
-  const std::size_t last_line = help.size() - (help.rfind('\n') + 1);  // npos + 1 is 0
-  return help + (last_line + 1 + note.size() > kWidth ? "\n" : " ") + note;
-}
-
 template <typename Quality>
 void add_field_options(CLI::App& command, FieldWords& fixed) {
   const Quality defaults;

@@ -10,9 +10,8 @@ class App;
 
 namespace roomradar {
 
-/// Adds one option per field of ScanQuality, and options with the fields' former names. Parsing checks the
-/// values and appends them to `fixed`, which must outlive the parsing. complete_quality() then sets the
-/// fields from `fixed`.
+/// Adds one option per field of ScanQuality. Parsing checks the values and appends them to `fixed`, which
+/// must outlive the parsing. complete_quality() then sets the fields from `fixed`.
 void add_scan_quality_options(CLI::App& command, FieldWords& fixed);
 /// Adds one option per field of RunQuality, as add_scan_quality_options() does.
 void add_run_quality_options(CLI::App& command, FieldWords& fixed);

@@ -70,13 +70,17 @@ void add_options(CLI::App& command, CalibrateOptions& options) {
       ->type_name("FILE");
   command
       .add_option("--columns", options.board.columns,
-                  "inner corners along the board's longer side (default: 8)")
+                  with_default("inner corners along the board's longer side", options.board.columns))
       ->check(whole_within(3, 30))
       ->type_name("N");
-  command.add_option("--rows", options.board.rows, "inner corners along the shorter side (default: 6)")
+  command
+      .add_option("--rows", options.board.rows,
+                  with_default("inner corners along the shorter side", options.board.rows))
       ->check(whole_within(3, 30))
       ->type_name("N");
-  command.add_option("--square", options.board.square_m, "side of a square, metres (default: 0.03)")
+  command
+      .add_option("--square", options.board.square_m,
+                  with_default("side of a square, metres", options.board.square_m))
       ->check(within(0.001, 1.0, "metres"))
       ->type_name("M");
   add_frames_option(command, options.frames);

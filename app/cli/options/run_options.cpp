@@ -19,9 +19,10 @@ void add_input_options(CLI::App& command, RunOptions& options) {
                   "folder of the saved map of a room, or of a building, of which only the tiles round the\n"
                   "camera are loaded; not modified (required unless SOURCE is a recorded session)")
       ->type_name("DIR");
-  add_poses_option(command, options.poses,
-                   "localise the camera in the map, with the recording's poses, if any, as a prior on its motion\n"
-                   "(auto) or without them (tracked), or use the recording's poses (recorded) (default: auto)");
+  add_poses_option(
+      command, options.poses,
+      "localise the camera in the map, with the recording's poses, if any, as a prior on its motion\n"
+      "(auto) or without them (tracked), or use the recording's poses (recorded)");
   add_frames_option(command, options.frames);
   add_calibration_option(command, options.calibration);
   add_input_options(command, options.input);
@@ -39,7 +40,7 @@ void add_world_options(CLI::App& command, RunOptions& options) {
               {"map", SurfacePolicy::kMap}},
              "surfaces that can be touched: this frame's pixels (holes), also with skirts across depth\n"
              "discontinuities (skirt), also with the image's border pushed outwards (border), or the map\n"
-             "and the dynamic foreground (map) (default: map)");
+             "and the dynamic foreground (map)");
   add_choice(command, "--unknown", options.unknown_is_solid, {{"free", false}, {"solid", true}},
              "space that the prescan has not observed: objects are stopped (solid; needs --surfaces map) or\n"
              "fall through it (free; for tests of falling through) (default: solid with --surfaces map)");
@@ -88,7 +89,7 @@ void add_picture_options(CLI::App& command, RunOptions& options) {
       ->type_name("DIR");
   command
       .add_option("--pictures-stride", options.pictures_stride,
-                  "write pictures of every Nth frame (default: 10)")
+                  with_default("write pictures of every Nth frame", options.pictures_stride))
       ->check(whole_within(1, 1'000'000))
       ->type_name("N");
   command

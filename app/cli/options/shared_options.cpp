@@ -58,7 +58,7 @@ void add_format_option(CLI::App& command, RecordingFormat& format) {
               {"7scenes", RecordingFormat::kSevenScenes},
               {"fakenect", RecordingFormat::kFakenect},
               {"rosbag", RecordingFormat::kRosBag}},
-             "format of the recording (default: tum)");
+             "format of the recording");
 }
 
 void add_ui_scale_option(CLI::App& command, std::optional<double>& ui_scale) {
