@@ -57,16 +57,20 @@ struct SessionConfig {
   std::optional<TileWindowConfig> tiles;
   /// The settings from here to picture_every_n_frames trade accuracy for time. Users set them with
   /// RunQuality.
-  int depth_stride = 1;         ///< 1, 2 or 4: factor by which depth images are reduced (reduce_depth)
-  int tracking_px = 160;        ///< max width of the images used for localisation
-  int verify_every_n_frames = 1;  ///< see Locator::verify_every_n_frames
-  bool fine_mesh = false;       ///< true: the dynamic mesh has the image's full resolution near objects
-  int move_every_n_frames = 1;  ///< each object is advanced in every n-th frame; objects alternate
+  /// Factor by which depth images are reduced (reduce_depth): 1, 2 or 4.
+  int depth_stride = RunQuality{}.depth_stride;
+  int tracking_px = RunQuality{}.tracking_px;  ///< max width of the images used for localisation
+  int verify_every_n_frames = RunQuality{}.verify_every_n_frames;  ///< see Locator::verify_every_n_frames
+  /// True: the dynamic mesh has the image's full resolution near objects.
+  bool fine_mesh = RunQuality{}.fine_mesh;
+  /// Each object is advanced in every n-th frame; objects alternate.
+  int move_every_n_frames = RunQuality{}.move_every_n_frames;
   /// Max deviation, in pixels, of the drawn level of detail from the full mesh.
-  double object_error_px = 0.7;
-  int shadow_every_n_frames = 1;  ///< in every n-th frame, at most one shadow is computed at full resolution
+  double object_error_px = RunQuality{}.object_error_px;
+  /// In every n-th frame, at most one shadow is computed at full resolution.
+  int shadow_every_n_frames = RunQuality{}.shadow_every_n_frames;
   /// A picture is made in every n-th frame. If > 1, objects are advanced only in frames without a picture.
-  int picture_every_n_frames = 1;
+  int picture_every_n_frames = RunQuality{}.picture_every_n_frames;
   bool make_picture = true;  ///< false: pictures are not drawn; objects are simulated as usual
   /// Called before each processing stage of a frame, and with kDone after the last one. A returned quality
   /// takes effect at once, for the stage that begins. With kDone, the returned quality is ignored. Null: not
