@@ -426,7 +426,7 @@ void Odometry::State::renew_flow(const Frame& frame, const Tracking& tracking) {
 /// Begins a new part of the scan with this frame, at the last known pose. Returns false if the frame has too
 /// little depth.
 bool Odometry::State::begin_part(const Frame& frame, Tracking& tracking) {
-  if (!config.begin_parts || predicted_by(kept.prior, frame.T_world_camera)) return false;
+  if (predicted_by(kept.prior, frame.T_world_camera)) return false;
   if (live.levels.front().size() < static_cast<std::size_t>(std::max(config.align.min_points, 1)))
     return false;
   if (frame.colour.empty() && !kept.last_moved_grey.empty()) return false;  // this frame alone

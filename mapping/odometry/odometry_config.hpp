@@ -33,9 +33,6 @@ struct OdometryConfig {
   /// Min overlap with the current keyframe. Below it, another keyframe becomes the current one, or a keyframe
   /// is added.
   double keyframe_overlap = 0.7;
-  /// Begin a new part of the scan when tracking is lost. Otherwise, frames are lost until a known place is
-  /// recognised.
-  bool begin_parts = true;
   /// Use recorded poses as a prior on the motion, see MotionPrior.
   bool use_recorded_poses = false;
   int references = 2;  ///< max number of keyframes that a frame is aligned with

@@ -101,9 +101,4 @@ bool are_times_wrong(const TimingEstimate& estimate) {
          std::abs(current.colour_delay_s - stated.colour_delay_s) > kDelay_s;
 }
 
-SensorTiming standard_deviation(const TimingEstimate& estimate) {
-  const TimingVector sigma = solve(estimate).sigma;
-  return {sigma(0), sigma(1), sigma(2)};
-}
-
 }  // namespace roomradar

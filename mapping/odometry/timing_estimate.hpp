@@ -31,8 +31,4 @@ bool are_times_wrong(const TimingEstimate& estimate);
 inline constexpr std::int64_t kProbeFrames = 100;
 inline constexpr int kMostRestarts = 3;
 
-/// Returns the standard deviations of the current times, s, from the evidence since the last change. Each is
-/// at most the prior's standard deviation: 10 ms for the readouts, 30 ms for the delay.
-SensorTiming standard_deviation(const TimingEstimate& estimate);
-
 }  // namespace roomradar

@@ -91,10 +91,8 @@ Contact PassesRadar::query_passes(const RadarQuery& query, const RadarScene& sce
   const bool is_doubtful =
       contact.status == ContactStatus::kContact || contact.status == ContactStatus::kNoTarget;
   if (is_doubtful && contact.lower_m < std::min(contact.pixel_m, query.distance_m) &&
-      contact.upper_m > contact.lower_m) {
-    ++exact_queries_;
+      contact.upper_m > contact.lower_m)
     return exact_.query(query, scene);
-  }
   if (one_sided_.empty()) return contact;
   RadarQuery of_one_sided = query;
   of_one_sided.own_tree = RadarQuery::kNotInScene;

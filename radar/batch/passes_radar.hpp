@@ -27,9 +27,6 @@ class PassesRadar final : public Radar {
   PassesRadar(GlContext& context, int resolution_px);
 
   Contact query(const RadarQuery& query, const RadarScene& scene) override;
-  /// Returns the number of queries since construction that were left to CyberRadar because lower_m was less
-  /// than a pixel.
-  [[nodiscard]] std::uint64_t exact_queries() const { return exact_queries_; }
   /// Returns the number of triangles uploaded since construction.
   [[nodiscard]] std::uint64_t uploaded_triangles() const { return uploaded_triangles_; }
 
@@ -43,7 +40,7 @@ class PassesRadar final : public Radar {
   GlRadar passes_;
   CyberRadar exact_;
   std::vector<Uploaded> uploaded_;
-  std::uint64_t queries_ = 0, exact_queries_ = 0, uploaded_triangles_ = 0;
+  std::uint64_t queries_ = 0, uploaded_triangles_ = 0;
   // Scratch memory of one query.
   std::vector<GpuSceneMesh> meshes_;
   std::vector<SceneTree> one_sided_;

@@ -8,10 +8,6 @@
 
 namespace roomradar {
 
-bool dominates(const CostAndError& a, const CostAndError& b) {
-  return a.cost <= b.cost && a.error <= b.error && (a.cost < b.cost || a.error < b.error);
-}
-
 std::vector<std::size_t> pareto_front_of(const std::vector<CostAndError>& points) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < points.size(); ++i)

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <limits>
 
 namespace roomradar::timing_estimate_test {
@@ -59,7 +58,6 @@ TEST(TimingEstimate, IgnoresEvidenceThatIsNotFinite) {
   bad.b(0) = std::numeric_limits<double>::quiet_NaN();
   for (int i = 0; i < 40; ++i) EXPECT_FALSE(add_evidence(estimate, bad));
   EXPECT_TRUE(estimate.sum.b.allFinite());
-  EXPECT_TRUE(std::isfinite(standard_deviation(estimate).colour_delay_s));
 }
 
 }  // namespace
