@@ -2,7 +2,6 @@
 #include "dynamic/surface/depth_mesh.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 #include "dynamic/surface/depth_discontinuity.hpp"
@@ -197,20 +196,6 @@ void require_valid(const DepthMeshConfig& config) {
   require(config.skirt_gap_px >= 0, "skirt_gap_px", config.skirt_gap_px, ">= 0");
   require(config.border_push_m >= 0.0F && config.border_push_m < 100.0F, "border_push_m",
           config.border_push_m, "in 0..100");
-}
-
-void mesh_masked(const PosedDepth& measured, const MaskImage& dynamic_mask, const DepthMeshConfig& config,
-                 DepthMeshScratch& scratch, Mesh& mesh) {
-  const DepthImage& depth_m = measured.depth_m;
-  assert(depth_m.width == dynamic_mask.width && depth_m.height == dynamic_mask.height);
-  start(depth_m, measured.T_world_camera, config, scratch, mesh);
-  GridMesher mesher(measured.camera, measured.T_world_camera, config, /*skirts=*/false, mesh);
-  const auto depth_at = [&](int x, int y) {
-    const std::size_t i = depth_m.index(x, y);
-    return dynamic_mask.pixels[i] != 0 ? depth_m.pixels[i] : 0.0F;
-  };
-  mesh_grid(depth_m.width, depth_m.height, config.stride_px, depth_at, scratch, mesher);
-  mesher.finish();
 }
 
 void mesh_whole(const PosedDepth& measured, SurfacePolicy policy, const DepthMeshConfig& config,

@@ -27,31 +27,24 @@ struct DepthMeshConfig {
 /// Throws Error naming the field, its value and the rule.
 void require_valid(const DepthMeshConfig& config);
 
-/// Buffers of mesh_masked() and mesh_whole(), reused from frame to frame. Their content is meaningless
+/// Buffers of mesh_whole(), reused from frame to frame. Their content is meaningless
 /// between calls.
 struct DepthMeshScratch {
   std::vector<std::uint32_t> vertex_above, vertex_here;  // vertex index per grid column, in two rows
   std::vector<float> filled_m;                           // image with its gaps filled, for skirts
 };
 
-/// Meshes the dynamic pixels. Vertices are the measured pixels of the mask on the stride grid that belong to
-/// a triangle. Triangles connect neighbours on one surface. No triangle spans a depth discontinuity or the
-/// mask's edge.
-///
-/// @param dynamic_mask  of the depth image's size; not 0: dynamic
-/// @param mesh          overwritten, allocations kept. Origin at the camera's position, axes of the world
-///                      frame, unit normals, counter-clockwise towards the camera, no colours. Empty if no
-///                      pixel is dynamic
-void mesh_masked(const PosedDepth& measured, const MaskImage& dynamic_mask, const DepthMeshConfig& config,
-                 DepthMeshScratch& scratch, Mesh& mesh);
-
 /// Meshes the whole frame, as a system without a map would. kHoles and kMap leave depth discontinuities open.
 /// kSkirt connects the two sides of each discontinuity, and of each unmeasured gap within a row, by polygons.
 /// kBorder adds two steps to kSkirt. The first step extends each row's first and last depth over the
 /// unmeasured pixels at the row's ends. The second step moves vertices on the image's border by border_push_m
 /// outwards in the image plane and by border_push_m nearer, so objects that leave the view do not fall.
-/// Parameters as for mesh_masked().
 /// Source of kBorder: the depth collider of Google's ARCore Depth Lab (2020).
+///
+/// Vertices are the measured pixels on the stride grid that belong to a triangle. Triangles connect
+/// neighbours on one surface.
+/// @param mesh  overwritten, allocations kept. Origin at the camera's position, axes of the world frame, unit
+///              normals, counter-clockwise towards the camera, no colours. Empty if no pixel is measured
 void mesh_whole(const PosedDepth& measured, SurfacePolicy policy, const DepthMeshConfig& config,
                 DepthMeshScratch& scratch, Mesh& mesh);
 

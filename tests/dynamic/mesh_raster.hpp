@@ -10,6 +10,13 @@
 
 namespace roomradar::test {
 
+/// Returns the image with depth 0 where the mask is 0.
+inline DepthImage masked_depth(DepthImage depth_m, const MaskImage& mask) {
+  for (std::size_t i = 0; i < depth_m.pixels.size(); ++i)
+    if (mask.pixels[i] == 0) depth_m.pixels[i] = 0.0F;
+  return depth_m;
+}
+
 /// Renders the nearest depth at each pixel's centre, 0 without a triangle; triangles cover their edges. All
 /// vertices must be in front of the camera.
 inline DepthImage rasterise(const Mesh& mesh, const Intrinsics& camera,

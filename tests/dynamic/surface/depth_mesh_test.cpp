@@ -9,6 +9,7 @@
 
 #include "mapping/types/depth_noise.hpp"
 #include "mapping/types/system/error.hpp"
+#include "tests/dynamic/mesh_raster.hpp"
 
 namespace roomradar::depth_mesh_test {
 namespace {
@@ -36,7 +37,8 @@ Mesh masked(const DepthImage& depth_m, const MaskImage& mask, const DepthMeshCon
             const Eigen::Isometry3d& T_world_camera = Eigen::Isometry3d::Identity()) {
   DepthMeshScratch scratch;
   Mesh mesh;
-  mesh_masked({depth_m, kKinect, T_world_camera}, mask, config, scratch, mesh);
+  const DepthImage masked_m = test::masked_depth(depth_m, mask);
+  mesh_whole({masked_m, kKinect, T_world_camera}, SurfacePolicy::kHoles, config, scratch, mesh);
   return mesh;
 }
 
@@ -305,12 +307,11 @@ TEST(DepthMesh, CoarserGridsStayWithinNoiseOfTheSurface) {
 TEST(DepthMesh, NoFrameAfterTheFirstReallocates) {
   DepthMeshScratch scratch;
   Mesh mesh;
-  const DepthImage depth_m = flat(1.0F);
-  MaskImage mask(640, 480, 0);
+  const DepthImage nothing = flat(0.0F), depth_m = flat(1.0F);
   const Eigen::Isometry3d T_world_camera = somewhere();
-  mesh_masked({depth_m, kKinect, T_world_camera}, mask, {}, scratch, mesh);
+  mesh_whole({nothing, kKinect, T_world_camera}, SurfacePolicy::kHoles, {}, scratch, mesh);
   const void* before[] = {mesh.vertices.data(), mesh.normals.data(), mesh.triangles.data()};
-  mesh_masked({depth_m, kKinect, T_world_camera}, everything(), {}, scratch, mesh);
+  mesh_whole({depth_m, kKinect, T_world_camera}, SurfacePolicy::kHoles, {}, scratch, mesh);
   const void* after[] = {mesh.vertices.data(), mesh.normals.data(), mesh.triangles.data()};
   for (std::size_t i = 0; i < std::size(before); ++i) EXPECT_EQ(before[i], after[i]);
   EXPECT_FALSE(mesh.triangles.empty());

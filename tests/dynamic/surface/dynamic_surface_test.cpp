@@ -78,7 +78,8 @@ Mesh in_full(const Scene& scene) {
   config.stride_px = 1;
   DepthMeshScratch scratch;
   Mesh mesh;
-  mesh_masked({scene.depth_m, kKinect, scene.T_world_camera}, scene.mask, config, scratch, mesh);
+  const DepthImage depth_m = test::masked_depth(scene.depth_m, scene.mask);
+  mesh_whole({depth_m, kKinect, scene.T_world_camera}, SurfacePolicy::kHoles, config, scratch, mesh);
   return mesh;
 }
 
