@@ -11,10 +11,10 @@
 #include "mapping/map/surface_points.hpp"
 #include "mapping/octree/prepared_frame.hpp"
 #include "mapping/odometry/odometry_snapshot.hpp"
-#include "mapping/read_ahead.hpp"
 #include "mapping/revision/ghost_removal.hpp"
 #include "mapping/scan_memory.hpp"
 #include "mapping/storage/checkpoints.hpp"
+#include "mapping/types/read_ahead.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/process_memory.hpp"
 

@@ -1,4 +1,4 @@
-// chosen_frames.cpp: seeks to each chosen frame, and reads the next one asynchronously.
+// chosen_frames.cpp: positions of the chosen frames, and the frames that are no longer the same.
 #include "mapping/revision/chosen_frames.hpp"
 
 #include <utility>
@@ -6,39 +6,33 @@
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
+namespace {
+
+std::vector<std::int64_t> positions_of(std::span<const FusedFrame> fused,
+                                       const std::vector<std::size_t>& chosen) {
+  std::vector<std::int64_t> positions;
+  for (const std::size_t i : chosen) positions.push_back(fused[i].position);
+  return positions;
+}
+
+}  // namespace
 
 ChosenFrames::ChosenFrames(FrameSource& source, std::span<const FusedFrame> fused,
                            std::vector<std::size_t> chosen, StageTimes& times)
-    : source_(source), fused_(fused), chosen_(std::move(chosen)), times_(times) {
+    : fused_(fused),
+      chosen_(std::move(chosen)),
+      times_(times),
+      ahead_(source, 0, positions_of(fused, chosen_), [](const Frame&, std::monostate&) {}) {
   if (!source.rewind()) throw Error(source.name() + ": cannot be read again");
-  read_ahead();
 }
 
 bool ChosenFrames::next(Frame& frame, std::size_t& index) {
-  while (next_ < chosen_.size()) {
-    const bool is_same = times_.timed("read", [&] { return is_read_.get(); });
+  for (std::monostate nothing; next_ < chosen_.size();) {
+    const ReadStatus status = times_.timed("read", [&] { return ahead_.next(frame, nothing).status; });
+    if (status == ReadStatus::kEnd) break;
+    if (status == ReadStatus::kWaiting) continue;
     index = chosen_[next_++];
-    if (is_same) std::swap(frame, ahead_);
-    read_ahead();
-    if (is_same) return true;
-  }
-  return false;
-}
-
-void ChosenFrames::read_ahead() {
-  if (next_ == chosen_.size()) return;
-  is_read_ = std::async(std::launch::async,
-                        [this, &chosen = fused_[chosen_[next_]]] { return read(chosen, ahead_); });
-}
-
-/// Returns false if the source does not deliver the same frame as before.
-bool ChosenFrames::read(const FusedFrame& chosen, Frame& frame) {
-  if (position_ != chosen.position && source_.seek(chosen.position)) position_ = chosen.position;
-  while (position_ <= chosen.position) {
-    const ReadResult result = source_.next(frame);
-    if (result.status == ReadStatus::kEnd) return false;
-    if (position_++ == chosen.position)
-      return result.status == ReadStatus::kFrame && frame.index == chosen.frame_index;
+    if (status == ReadStatus::kFrame && frame.index == fused_[index].frame_index) return true;
   }
   return false;
 }

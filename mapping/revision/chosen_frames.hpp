@@ -2,11 +2,11 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
-#include <future>
 #include <span>
+#include <variant>
 #include <vector>
 
-#include "mapping/types/frame_source.hpp"
+#include "mapping/types/read_ahead.hpp"
 #include "mapping/types/system/stage_times.hpp"
 
 namespace roomradar {
@@ -37,17 +37,11 @@ class ChosenFrames {
   bool next(Frame& frame, std::size_t& index);
 
  private:
-  FrameSource& source_;
   std::span<const FusedFrame> fused_;
   std::vector<std::size_t> chosen_;
   StageTimes& times_;
-  std::size_t next_ = 0;       ///< index in chosen_
-  std::int64_t position_ = 0;  ///< position of the source
-  Frame ahead_;                ///< filled by the second thread
-  std::future<bool> is_read_;  ///< declared last: its destructor waits for the thread
-
-  void read_ahead();
-  bool read(const FusedFrame& chosen, Frame& frame);
+  std::size_t next_ = 0;  ///< index in chosen_
+  ReadAhead<std::monostate> ahead_;
 };
 
 }  // namespace roomradar

@@ -1,6 +1,6 @@
 // read_ahead_test.cpp: frames come in order, each with what was prepared of it, and no more are read than
 // asked for.
-#include "mapping/read_ahead.hpp"
+#include "mapping/types/read_ahead.hpp"
 
 #include <gtest/gtest.h>
 
