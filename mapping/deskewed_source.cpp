@@ -19,7 +19,7 @@ void invert(Image<float>& image) {
 
 DeskewedSource::DeskewedSource(FrameSource& source, const std::vector<TimedPose>& trajectory,
                                const SensorTiming& timing)
-    : source_(source), timing_(timing) {
+    : WrappedSource(source), timing_(timing) {
   for (std::size_t i = 1; i + 1 < trajectory.size(); ++i) {
     const TimedPose &before = trajectory[i - 1], &after = trajectory[i + 1];
     velocities_[trajectory[i].frame_index] =

@@ -14,19 +14,14 @@ namespace roomradar {
 /// would have seen it at the middle of the readout. T_colour_depth accounts for the delay of the colour
 /// image. Frames without neighbours of known pose are unchanged. Depth is also unchanged if no row would move
 /// by more than about half a pixel. The other source must outlive this one.
-class DeskewedSource final : public FrameSource {
+class DeskewedSource final : public WrappedSource {
  public:
   /// @param trajectory  poses in the order of their stamps
   DeskewedSource(FrameSource& source, const std::vector<TimedPose>& trajectory, const SensorTiming& timing);
 
   ReadResult next(Frame& frame) override;
-  bool rewind() override { return source_.rewind(); }
-  bool seek(std::int64_t index) override { return source_.seek(index); }
-  [[nodiscard]] std::optional<std::int64_t> frame_count() const override { return source_.frame_count(); }
-  [[nodiscard]] std::string name() const override { return source_.name(); }
 
  private:
-  FrameSource& source_;
   SensorTiming timing_;
   std::map<std::int64_t, CameraVelocity> velocities_;  ///< by frame index
   Image<float> inverse_depth_per_m_, no_intensity_;

@@ -18,10 +18,10 @@ PlanePoint<double> real_pixel(const Intrinsics& camera, const Lens& lens, int x,
   return {camera.fx_px * p.x + camera.cx_px, camera.fy_px * p.y + camera.cy_px};
 }
 
-class CalibratedSource final : public FrameSource {
+class CalibratedSource final : public WrappedSource {
  public:
   CalibratedSource(std::unique_ptr<FrameSource> source, const Calibration& calibration)
-      : source_(std::move(source)), calibration_(calibration) {
+      : WrappedSource(std::move(source)), calibration_(calibration) {
     const Intrinsics& depth = calibration_.rig.depth_camera;
     depth_table_.resize(depth.width_px, depth.height_px);
     for (int y = 0; y < depth.height_px; ++y)
@@ -50,7 +50,7 @@ class CalibratedSource final : public FrameSource {
   }
 
   ReadResult next(Frame& frame) override {
-    const ReadResult result = source_->next(frame);
+    const ReadResult result = source_.next(frame);
     if (result.status != ReadStatus::kFrame) return result;
     correct_depth(frame);
     // Also for a frame without colour image: all frames of a recording must have the same cameras.
@@ -58,10 +58,6 @@ class CalibratedSource final : public FrameSource {
     if (calibration_.rig.colour_camera && has_colour_camera) correct_colour(frame);
     return result;
   }
-  bool rewind() override { return source_->rewind(); }
-  bool seek(std::int64_t index) override { return source_->seek(index); }
-  [[nodiscard]] std::optional<std::int64_t> frame_count() const override { return source_->frame_count(); }
-  [[nodiscard]] std::string name() const override { return source_->name(); }
 
  private:
   struct RealPixel {
@@ -71,7 +67,7 @@ class CalibratedSource final : public FrameSource {
 
   void require_size(const char* which, int width_px, int height_px, const Intrinsics& camera) const {
     if (width_px == camera.width_px && height_px == camera.height_px) return;
-    throw Error(source_->name() + ": its " + which + " images are " + std::to_string(width_px) + " x " +
+    throw Error(source_.name() + ": its " + which + " images are " + std::to_string(width_px) + " x " +
                 std::to_string(height_px) + ", but the calibration is for " +
                 std::to_string(camera.width_px) + " x " + std::to_string(camera.height_px) +
                 "; calibrate in the mode that you record in");
@@ -106,7 +102,6 @@ class CalibratedSource final : public FrameSource {
     cv::remap(real, ideal, colour_x_, colour_y_, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
   }
 
-  std::unique_ptr<FrameSource> source_;
   Calibration calibration_;
   Image<RealPixel> depth_table_;
   cv::Mat colour_x_, colour_y_;

@@ -43,21 +43,16 @@ void on_interrupt(int signal) {
   errno = errno_before;
 }
 
-class EndedByInterrupt final : public FrameSource {
+class EndedByInterrupt final : public WrappedSource {
  public:
-  explicit EndedByInterrupt(std::unique_ptr<FrameSource> source) : source_(std::move(source)) {}
+  explicit EndedByInterrupt(std::unique_ptr<FrameSource> source) : WrappedSource(std::move(source)) {}
 
   ReadResult next(Frame& frame) override {
     at_end_ = at_end_ || Interrupt::take();
-    return at_end_ ? ReadResult{ReadStatus::kEnd, {}} : source_->next(frame);
+    return at_end_ ? ReadResult{ReadStatus::kEnd, {}} : source_.next(frame);
   }
-  bool rewind() override { return source_->rewind(); }
-  bool seek(std::int64_t index) override { return source_->seek(index); }
-  [[nodiscard]] std::optional<std::int64_t> frame_count() const override { return source_->frame_count(); }
-  [[nodiscard]] std::string name() const override { return source_->name(); }
 
  private:
-  std::unique_ptr<FrameSource> source_;
   bool at_end_ = false;
 };
 

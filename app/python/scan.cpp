@@ -31,19 +31,14 @@ struct Scan {
 };
 
 /// Another source's frames, in the order of one pass. Ends when `is_ended` is set.
-class EndedByFlag final : public FrameSource {
+class EndedByFlag final : public WrappedSource {
  public:
   EndedByFlag(FrameSource& source, const std::atomic<bool>& is_ended)
-      : source_(source), is_ended_(is_ended) {}
+      : WrappedSource(source), is_ended_(is_ended) {}
 
   ReadResult next(Frame& frame) override { return is_ended_ ? ReadResult{} : source_.next(frame); }
-  bool rewind() override { return source_.rewind(); }
-  bool seek(std::int64_t index) override { return source_.seek(index); }
-  [[nodiscard]] std::optional<std::int64_t> frame_count() const override { return source_.frame_count(); }
-  [[nodiscard]] std::string name() const override { return source_.name(); }
 
  private:
-  FrameSource& source_;
   const std::atomic<bool>& is_ended_;
 };
 

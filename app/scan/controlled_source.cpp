@@ -6,10 +6,10 @@
 namespace roomradar {
 namespace {
 
-class ControlledSource final : public FrameSource {
+class ControlledSource final : public WrappedSource {
  public:
   ControlledSource(std::unique_ptr<FrameSource> source, ScanChannel& channel)
-      : source_(std::move(source)), channel_(channel) {}
+      : WrappedSource(std::move(source)), channel_(channel) {}
 
   ReadResult next(Frame& frame) override {
     if (is_controlled_) {
@@ -17,16 +17,11 @@ class ControlledSource final : public FrameSource {
       throw_if_discarded(channel_);
       if (channel_.requested() == ScanRequest::kFinish) return ended();
     }
-    const ReadResult result = source_->next(frame);
+    const ReadResult result = source_.next(frame);
     return result.status == ReadStatus::kEnd ? ended() : result;
   }
-  bool rewind() override { return source_->rewind(); }
-  bool seek(std::int64_t index) override { return source_->seek(index); }
-  [[nodiscard]] std::optional<std::int64_t> frame_count() const override { return source_->frame_count(); }
-  [[nodiscard]] std::string name() const override { return source_->name(); }
 
  private:
-  std::unique_ptr<FrameSource> source_;
   ScanChannel& channel_;
   bool is_controlled_ = true;  ///< until the first end: then the frames have been chosen
 

@@ -1,8 +1,10 @@
 // frame_source.hpp: interface of recordings and live devices that deliver frames.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "mapping/types/frame.hpp"
 
@@ -45,6 +47,26 @@ class FrameSource {
 
   /// Returns the source's name as the user gave it, for messages and reports.
   [[nodiscard]] virtual std::string name() const = 0;
+};
+
+/// Base of sources that change or select the frames of another source. Passes on all calls but next().
+class WrappedSource : public FrameSource {
+ public:
+  bool rewind() override { return source_.rewind(); }
+  bool seek(std::int64_t index) override { return source_.seek(index); }
+  [[nodiscard]] std::optional<std::int64_t> frame_count() const override { return source_.frame_count(); }
+  [[nodiscard]] std::string name() const override { return source_.name(); }
+
+ protected:
+  /// @param source  must outlive this object
+  explicit WrappedSource(FrameSource& source) : source_(source) {}
+  explicit WrappedSource(std::unique_ptr<FrameSource> source) : owned_(std::move(source)), source_(*owned_) {}
+
+ private:
+  std::unique_ptr<FrameSource> owned_;  ///< null: the source belongs to the caller
+
+ protected:
+  FrameSource& source_;
 };
 
 }  // namespace roomradar

@@ -18,18 +18,18 @@ std::uintmax_t bytes_of(const Frame& frame) {
   return frame.depth_m.pixels.size() * sizeof(float) + frame.colour.pixels.size() * sizeof(Rgb);
 }
 
-class CachedSource final : public FrameSource {
+class CachedSource final : public WrappedSource {
  public:
   CachedSource(std::unique_ptr<FrameSource> source, ScratchFolder folder, std::uintmax_t max_bytes)
-      : source_(std::move(source)), bytes_left_(max_bytes), folder_(std::move(folder)) {}
+      : WrappedSource(std::move(source)), bytes_left_(max_bytes), folder_(std::move(folder)) {}
 
   ReadResult next(Frame& frame) override {
     if (read_cached(frame)) {
       ++position_;
       return {ReadStatus::kFrame, {}};
     }
-    if (source_position_ != position_ && !source_->seek(position_)) return {ReadStatus::kEnd, {}};
-    const ReadResult result = source_->next(frame);
+    if (source_position_ != position_ && !source_.seek(position_)) return {ReadStatus::kEnd, {}};
+    const ReadResult result = source_.next(frame);
     if (result.status == ReadStatus::kFrame) keep(frame);
     if (result.status != ReadStatus::kEnd) ++position_;
     source_position_ = position_;
@@ -42,13 +42,10 @@ class CachedSource final : public FrameSource {
   }
 
   bool seek(std::int64_t index) override {
-    if (index < 0 || index >= source_->frame_count().value_or(0)) return false;
+    if (index < 0 || index >= source_.frame_count().value_or(0)) return false;
     position_ = index;
     return true;
   }
-
-  [[nodiscard]] std::optional<std::int64_t> frame_count() const override { return source_->frame_count(); }
-  [[nodiscard]] std::string name() const override { return source_->name(); }
 
  private:
   /// Returns false if the frame is not cached.
@@ -86,12 +83,11 @@ class CachedSource final : public FrameSource {
     }
   }
 
-  std::unique_ptr<FrameSource> source_;
   std::uintmax_t bytes_left_;
   ScratchFolder folder_;
   std::unordered_map<std::int64_t, SpoolEntry> entries_;  ///< by position
   std::int64_t position_ = 0;                             ///< of the frame that next() delivers
-  std::int64_t source_position_ = 0;                      ///< of the frame that source_->next() delivers
+  std::int64_t source_position_ = 0;                      ///< of the frame that source_.next() delivers
   Frame written_;
   std::int64_t written_position_ = -1;
   std::future<SpoolEntry> write_;  ///< last member: its destructor waits for the write

@@ -8,29 +8,26 @@
 namespace roomradar {
 namespace {
 
-class ReadAheadSource final : public FrameSource {
+class ReadAheadSource final : public WrappedSource {
  public:
-  explicit ReadAheadSource(std::unique_ptr<FrameSource> source) : source_(std::move(source)) {}
+  explicit ReadAheadSource(std::unique_ptr<FrameSource> source) : WrappedSource(std::move(source)) {}
 
   ReadResult next(Frame& frame) override {
     const bool in_sequence = std::exchange(in_sequence_, true);
-    const ReadResult result = ahead_.valid() ? take(frame) : source_->next(frame);
+    const ReadResult result = ahead_.valid() ? take(frame) : source_.next(frame);
     if (in_sequence && result.status != ReadStatus::kEnd)
-      ahead_ = std::async(std::launch::async, [this] { return source_->next(frame_ahead_); });
+      ahead_ = std::async(std::launch::async, [this] { return source_.next(frame_ahead_); });
     return result;
   }
 
   bool rewind() override {
-    return jump([this] { return source_->rewind(); });
+    return jump([this] { return source_.rewind(); });
   }
   bool seek(std::int64_t index) override {
-    return jump([this, index] { return source_->seek(index); });
+    return jump([this, index] { return source_.seek(index); });
   }
-  [[nodiscard]] std::optional<std::int64_t> frame_count() const override { return source_->frame_count(); }
-  [[nodiscard]] std::string name() const override { return source_->name(); }
 
  private:
-  std::unique_ptr<FrameSource> source_;
   Frame frame_ahead_;         ///< filled by the thread; its allocations are those of frames delivered before
   bool in_sequence_ = false;  ///< a frame was read since the last jump
   std::future<ReadResult> ahead_;  ///< declared last: its destructor waits for the thread
