@@ -561,7 +561,7 @@ class GltfCollector {
     for (const Triangle& of : primitive.triangles) {
       Triangle triangle{};
       for (std::size_t k = 0; k < 3; ++k) triangle[k] = part.first_vertex + of[is_mirrored ? 2 - k : k];
-      if (has_area(triangle)) mesh.triangles.push_back(triangle);
+      if (triangle_area_m2(mesh, triangle) > 0.0) mesh.triangles.push_back(triangle);
     }
     part.triangle_count = static_cast<std::uint32_t>(mesh.triangles.size()) - part.first_triangle;
     scene_.parts.push_back(part);
@@ -587,14 +587,6 @@ class GltfCollector {
       sum += weight;
     }
     return sum > 0.0 ? Eigen::Matrix4d(T / sum) : T_scene_mesh;
-  }
-
-  [[nodiscard]] bool has_area(const Triangle& t) const {
-    const std::vector<Eigen::Vector3f>& vertices = scene_.mesh.vertices;
-    const Eigen::Vector3d a = vertices[t[0]].cast<double>();
-    const Eigen::Vector3d u = vertices[t[1]].cast<double>() - a;
-    const Eigen::Vector3d v = vertices[t[2]].cast<double>() - a;
-    return u.cross(v).squaredNorm() > 0.0;
   }
 };
 

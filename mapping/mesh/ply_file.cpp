@@ -78,13 +78,6 @@ Value take(std::string_view& bytes) {
   return value;
 }
 
-bool has_area(const Mesh& mesh, const Triangle& t) {
-  const Eigen::Vector3d a = mesh.vertices[t[0]].cast<double>();
-  const Eigen::Vector3d u = mesh.vertices[t[1]].cast<double>() - a;
-  const Eigen::Vector3d v = mesh.vertices[t[2]].cast<double>() - a;
-  return u.cross(v).squaredNorm() > 0.0;
-}
-
 }  // namespace
 
 void erase_flat_triangles(Mesh& mesh) {
@@ -146,7 +139,7 @@ std::optional<Mesh> mesh_of_ply(std::string_view bytes, const std::filesystem::p
     const auto triangle = take<Triangle>(bytes);
     for (const std::uint32_t vertex : triangle)
       if (vertex >= mesh.vertices.size()) fail_for_file(path, "a triangle names a vertex that is not there");
-    if (has_area(mesh, triangle)) mesh.triangles.push_back(triangle);
+    if (triangle_area_m2(mesh, triangle) > 0.0) mesh.triangles.push_back(triangle);
   }
   return mesh;
 }

@@ -139,15 +139,7 @@ class Collector {
         fail_for_file(path_, "a triangle names a vertex that is not there");
       triangle[k] = first_vertex + face.mIndices[mirrored ? 2 - k : k];
     }
-    if (has_area(triangle)) collected_.mesh.triangles.push_back(triangle);
-  }
-
-  [[nodiscard]] bool has_area(const Triangle& t) const {
-    const std::vector<Eigen::Vector3f>& vertices = collected_.mesh.vertices;
-    const Eigen::Vector3d a = vertices[t[0]].cast<double>();
-    const Eigen::Vector3d u = vertices[t[1]].cast<double>() - a;
-    const Eigen::Vector3d v = vertices[t[2]].cast<double>() - a;
-    return u.cross(v).squaredNorm() > 0.0;
+    if (triangle_area_m2(collected_.mesh, triangle) > 0.0) collected_.mesh.triangles.push_back(triangle);
   }
 };
 
