@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <map>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -64,14 +63,7 @@ void read_listed_poses(const fs::path& folder, const std::vector<std::int64_t>& 
 Intrinsics read_camera_matrix(const fs::path& path, ImageSize size, RecordingFacts& facts) {
   constexpr std::uintmax_t kMax_bytes = 1U << 16U;
   const std::string name = path.string();
-  std::vector<double> m;
-  std::istringstream lines(read_bytes(path, "a camera matrix", kMax_bytes));
-  for (std::string line; std::getline(lines, line);)
-    for (const std::string_view word : split_words(line)) {
-      const auto value = parse_number(word);
-      if (!value) throw Error(name + ": '" + std::string(word.substr(0, 40)) + "' is not a number");
-      m.push_back(*value);
-    }
+  const std::vector<double> m = parse_numbers(read_bytes(path, "a camera matrix", kMax_bytes), name);
   if (m.size() != 16 && m.size() != 9)
     throw Error(name + ": has " + std::to_string(m.size()) + " numbers; must be a 4 x 4 matrix");
   const std::size_t columns = m.size() == 16 ? 4 : 3;

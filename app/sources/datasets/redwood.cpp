@@ -39,20 +39,6 @@ fs::path intrinsics_file(const fs::path& folder) {
   return {};
 }
 
-/// Calls use(numbers, where) per line that is not empty and no comment.
-template <typename Use>
-void for_each_numbers(const fs::path& path, const Use& use) {
-  for_each_line(path, [&](std::string_view line, const std::string& where) {
-    std::vector<double> numbers;
-    for (const std::string_view word : split_words(line)) {
-      const auto number = parse_number(word);
-      if (!number) throw Error(where + ": '" + std::string(word.substr(0, 40)) + "' is not a number");
-      numbers.push_back(*number);
-    }
-    use(numbers, where);
-  });
-}
-
 /// A pose of a .log file. Its heading's first number is the frame's.
 struct LoggedPose {
   std::int64_t frame = 0;
@@ -67,7 +53,8 @@ std::vector<LoggedPose> read_log(const fs::path& path, RecordingFacts& facts) {
   Eigen::Matrix4d matrix;
   int row = -1;  // of the matrix; -1: its heading
   std::int64_t frame = -1;
-  const auto read_line = [&](const std::vector<double>& numbers, const std::string& where) {
+  const auto read_line = [&](std::string_view line, const std::string& where) {
+    const std::vector<double> numbers = parse_numbers(line, where);
     const std::size_t count = row < 0 ? 3 : 4;
     if (numbers.size() != count)
       throw Error(where + ": has " + std::to_string(numbers.size()) + " numbers; must be " +
@@ -83,7 +70,7 @@ std::vector<LoggedPose> read_log(const fs::path& path, RecordingFacts& facts) {
   };
   std::string fault;
   try {
-    for_each_numbers(path, read_line);
+    for_each_line(path, read_line);
     if (row >= 0) fault = path.string() + ": ends within a pose; is it cut short?";
   } catch (const Error& error) {
     fault = error.what();
@@ -305,13 +292,13 @@ RecordingFacts index_icl_nuim(const fs::path& folder) {
   facts.camera_origin = Origin::kFormat;
   facts.camera_source = "the rendered camera of ICL-NUIM";
   std::map<double, std::optional<Eigen::Isometry3d>> poses;
-  for_each_numbers(file_ending(folder, ".gt.freiburg"),
-                   [&](const std::vector<double>& row, const std::string& where) {
-                     if (row.size() != 8 || !std::isfinite(row[0]))
-                       throw Error(where + ": has " + std::to_string(row.size()) +
-                                   " numbers; must be a frame, a position and a quaternion");
-                     poses[row[0]] = rigid_pose({row[1], row[2], row[3]}, {row[4], row[5], row[6], row[7]});
-                   });
+  for_each_line(file_ending(folder, ".gt.freiburg"), [&](std::string_view line, const std::string& where) {
+    const std::vector<double> row = parse_numbers(line, where);
+    if (row.size() != 8 || !std::isfinite(row[0]))
+      throw Error(where + ": has " + std::to_string(row.size()) +
+                  " numbers; must be a frame, a position and a quaternion");
+    poses[row[0]] = rigid_pose({row[1], row[2], row[3]}, {row[4], row[5], row[6], row[7]});
+  });
   Eigen::Isometry3d mirror = Eigen::Isometry3d::Identity();
   mirror.linear().diagonal() << 1, -1, 1;
   for (std::size_t i = 0; i < numbers.size(); ++i) {

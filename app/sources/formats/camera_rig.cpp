@@ -197,14 +197,7 @@ Intrinsics read_intrinsics_matrix(const std::filesystem::path& path, int width_p
   std::string text = read_json_text(path);
   for (char& c : text)  // as NumPy and MATLAB print a matrix
     if (c == ',' || c == ';' || c == '[' || c == ']') c = ' ';
-  std::vector<double> m;
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);)
-    for (const std::string_view word : split_words(line)) {
-      const auto value = parse_number(word);
-      if (!value) throw Error(name + ": '" + std::string(word.substr(0, 40)) + "' is not a number");
-      m.push_back(*value);
-    }
+  std::vector<double> m = parse_numbers(text, name);
   if (m.size() == 12 || m.size() == 16)  // the first three columns and rows
     m = {m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]};
   if (m.size() != 9)

@@ -5,15 +5,17 @@
 #include <cmath>
 #include <limits>
 
+#include "mapping/types/system/error.hpp"
+
 namespace roomradar {
 
-std::vector<std::string_view> split_words(std::string_view line) {
-  constexpr std::string_view kBlank = " \t\r";
+std::vector<std::string_view> split_words(std::string_view text) {
+  constexpr std::string_view kBlank = " \t\r\n";
   std::vector<std::string_view> words;
-  for (std::size_t start = line.find_first_not_of(kBlank); start != std::string_view::npos;) {
-    const std::size_t end = line.find_first_of(kBlank, start);
-    words.push_back(line.substr(start, end == std::string_view::npos ? end : end - start));
-    start = line.find_first_not_of(kBlank, end);
+  for (std::size_t start = text.find_first_not_of(kBlank); start != std::string_view::npos;) {
+    const std::size_t end = text.find_first_of(kBlank, start);
+    words.push_back(text.substr(start, end == std::string_view::npos ? end : end - start));
+    start = text.find_first_not_of(kBlank, end);
   }
   return words;
 }
@@ -29,6 +31,16 @@ std::optional<double> parse_number(std::string_view word) {
   const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (fault != std::errc() || end != word.data() + word.size()) return std::nullopt;
   return value;
+}
+
+std::vector<double> parse_numbers(std::string_view text, const std::string& where) {
+  std::vector<double> numbers;
+  for (const std::string_view word : split_words(text)) {
+    const auto number = parse_number(word);
+    if (!number) throw Error(where + ": '" + std::string(word.substr(0, 40)) + "' is not a number");
+    numbers.push_back(*number);
+  }
+  return numbers;
 }
 
 std::optional<std::int64_t> parse_whole_number(std::string_view word) {
