@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
-#include <thread>
 
 #include "app/cli/interrupt.hpp"
 #include "app/cli/options/option_checks.hpp"
@@ -15,6 +14,7 @@
 #include "mapping/map/map_folder.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/folder_entries.hpp"
+#include "mapping/types/system/parallel_for.hpp"
 
 namespace roomradar {
 namespace {
@@ -160,9 +160,7 @@ int run_building(const BuildingOptions& options, const RunStage& run_stage) {
 }
 
 int run(const BuildingOptions& options) {
-  const int processes = options.processes > 0
-                            ? options.processes
-                            : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const int processes = given_or_processors(options.processes);
   const Interrupt interrupt;
   Interrupt::say("roomradar: stopping the running jobs; the same command continues them later\n");
   return run_building(options, [&](const std::string& stage, const FarmPlan& plan) {

@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <future>
 #include <memory>
-#include <thread>
 
 #include "app/cli/deferred_errors.hpp"
 #include "app/cli/progress.hpp"
@@ -29,6 +28,7 @@
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/folder_entries.hpp"
 #include "mapping/types/system/make_folder.hpp"
+#include "mapping/types/system/parallel_for.hpp"
 #include "radar/batch/passes_radar.hpp"
 
 namespace roomradar {
@@ -211,9 +211,7 @@ int run(const FallthroughOptions& options) {
     require_writable(path);
   require_folder_of_maps(options.maps);
   if (options.scenario) return replay(options, scan);
-  const int threads = options.threads > 0
-                          ? options.threads
-                          : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const int threads = given_or_processors(options.threads);
   Report report;
   report.command = "fallthrough";
   report.source = "simulated rooms";

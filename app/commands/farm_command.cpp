@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "app/cli/interrupt.hpp"
@@ -17,6 +16,7 @@
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/make_folder.hpp"
+#include "mapping/types/system/parallel_for.hpp"
 
 namespace roomradar {
 namespace {
@@ -115,9 +115,7 @@ namespace {
 
 /// Runs a plan on this machine, until it is done or Ctrl-C is pressed, which throws Error.
 FarmState run_here(const FarmOptions& options, const FarmPlan& plan) {
-  const int processes = options.processes > 0
-                            ? options.processes
-                            : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const int processes = given_or_processors(options.processes);
   const Interrupt interrupt;
   Interrupt::say("roomradar: stopping the running jobs; the same command continues them later\n");
   FarmState state = run_planned(options, plan, [&](const WatchFarm& watch) {

@@ -21,6 +21,13 @@ std::shared_ptr<const ObjectModel> model_among(std::span<const std::unique_ptr<V
 
 }  // namespace
 
+std::string_view state_word(const VirtualObject& object) {
+  if (!object.in_room) return "outside";
+  if (object.carried_to_world) return "carried";
+  if (object.stuck) return "stuck";
+  return object.body.asleep ? "at rest" : "moving";
+}
+
 VirtualObject::VirtualObject(std::string name, std::shared_ptr<const ObjectModel> its_model)
     : model(std::move(its_model)) {
   body.name = std::move(name);

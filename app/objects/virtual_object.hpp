@@ -79,6 +79,9 @@ void change_material(VirtualObject& object, const BodyMaterial& change);
 /// Returns the object of this name; null if there is none.
 VirtualObject* find_object(std::span<const std::unique_ptr<VirtualObject>> objects, const std::string& name);
 
+/// Returns "outside" (of the room), "carried", "stuck", "at rest" or "moving".
+std::string_view state_word(const VirtualObject& object);
+
 /// Return the heights of the object's lowest and highest vertex above its origin in its current orientation,
 /// m.
 double lowest_m(const VirtualObject& object);

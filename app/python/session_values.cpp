@@ -9,13 +9,6 @@
 namespace roomradar::python {
 namespace {
 
-std::string state_of(const VirtualObject& object) {
-  if (!object.in_room) return "outside";
-  if (object.carried_to_world) return "carried";
-  if (object.stuck) return "stuck";
-  return object.body.asleep ? "at rest" : "moving";
-}
-
 py::dict foreground_of(const FrameResult& result) {
   py::dict counts;
   counts["valid"] = result.foreground.valid;
@@ -98,7 +91,7 @@ void bind_objects(py::module_& module) {
 ObjectSnapshot snapshot_of(const VirtualObject& object) {
   const Body& body = object.body;
   ObjectSnapshot snapshot{body.name,
-                          state_of(object),
+                          std::string(state_word(object)),
                           body.T_world_object,
                           body.velocity_world_mps,
                           body.angular_velocity_world_rad_s,

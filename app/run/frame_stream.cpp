@@ -21,13 +21,6 @@ nlohmann::json pose(const Eigen::Isometry3d& T) {
           {"orientation_xyzw", to_json(Eigen::Quaterniond(T.linear()))}};
 }
 
-std::string_view state_of(const VirtualObject& object) {
-  if (!object.in_room) return "outside";
-  if (object.carried_to_world) return "carried";
-  if (object.stuck) return "stuck";
-  return object.body.asleep ? "at rest" : "moving";
-}
-
 nlohmann::json json_of(const ObjectContact& contact) {
   return {{"with", to_string(contact.closest.kind)},
           {"object", contact.other != nullptr ? nlohmann::json(contact.other->name) : nullptr},
@@ -37,7 +30,7 @@ nlohmann::json json_of(const ObjectContact& contact) {
 }
 
 nlohmann::json json_of(const VirtualObject& object) {
-  nlohmann::json json = {{"name", object.body.name}, {"state", state_of(object)}};
+  nlohmann::json json = {{"name", object.body.name}, {"state", state_word(object)}};
   if (!object.in_room) return json;
   json.update(pose(object.body.T_world_object));
   json["velocity_mps"] = to_json(object.body.velocity_world_mps);

@@ -20,6 +20,7 @@
 
 #include "app/serve/locate_request.hpp"
 #include "mapping/types/system/error.hpp"
+#include "mapping/types/system/parallel_for.hpp"
 
 namespace roomradar {
 namespace {
@@ -278,8 +279,7 @@ struct MapServer::State {
 };
 
 MapServer::MapServer(MapServerConfig config, MapCatalogue catalogue) {
-  if (config.locating <= 0)
-    config.locating = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  config.locating = given_or_processors(config.locating);
   state_ = std::make_unique<State>(std::move(config), std::move(catalogue));
   state_->set_up();
   const ListenAddress& address = state_->config.address;

@@ -16,6 +16,11 @@ inline unsigned hardware_threads() {
   return std::clamp(std::thread::hardware_concurrency(), 1U, kMaxThreads);
 }
 
+/// Returns `given` if > 0, else the number of processors.
+inline int given_or_processors(int given) {
+  return given > 0 ? given : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
 /// Calls work(piece, thread) for each piece in 0..pieces-1, on up to `threads` threads. The number of a
 /// thread is below `threads`; 0 is the caller's. Idle threads take the next piece, so results must not depend
 /// on the order of the pieces. Waits for all threads, and rethrows an exception of `work`.
