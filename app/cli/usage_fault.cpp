@@ -106,13 +106,8 @@ std::string unknown_option(const CLI::App& command, std::span<const std::string>
   return {};
 }
 
-}  // namespace
-
-std::string did_you_mean(std::string_view word, std::span<const std::string> candidates) {
-  const std::string nearest = nearest_word(word, candidates);
-  return nearest.empty() ? "" : "; did you mean " + nearest + "?";
-}
-
+/// Returns a line with name and description for each direct subcommand of `app`, the program or one of its
+/// commands.
 std::string command_list(const CLI::App& app) {
   std::string list;
   for (const CLI::App* command : commands_of(app)) {
@@ -123,6 +118,13 @@ std::string command_list(const CLI::App& app) {
     list += "  " + name + std::string(name.size() < 13 ? 13 - name.size() : 1, ' ') + what + "\n";
   }
   return list;
+}
+
+}  // namespace
+
+std::string did_you_mean(std::string_view word, std::span<const std::string> candidates) {
+  const std::string nearest = nearest_word(word, candidates);
+  return nearest.empty() ? "" : "; did you mean " + nearest + "?";
 }
 
 std::string usage_fault(const CLI::App& app, const CLI::ParseError& error,

@@ -26,8 +26,4 @@ std::string did_you_mean(std::string_view word, std::span<const std::string> can
 std::string usage_fault(const CLI::App& app, const CLI::ParseError& error,
                         const std::vector<std::string>& arguments);
 
-/// Returns a line with name and description for each direct subcommand of `app`, the program or one of its
-/// commands.
-std::string command_list(const CLI::App& app);
-
 }  // namespace roomradar

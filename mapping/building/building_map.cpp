@@ -55,6 +55,16 @@ void add_tile(const Mesh& tile, VertexAt& vertex_at, Mesh& whole) {
     whole.triangles.push_back({index_in_whole[t[0]], index_in_whole[t[1]], index_in_whole[t[2]]});
 }
 
+/// Returns the memory of a keyframe with its share of the index, in bytes. A frame of 640 x 480 pixels with
+/// 800 features has 112,000.
+std::size_t keyframe_bytes(const MapKeyframe& keyframe) {
+  constexpr std::size_t kIndexed = 128;  // bytes per indexed descriptor: 16 tables of 8 bytes
+  return sizeof(MapKeyframe) + keyframe.descriptors.size() * sizeof(Descriptor) +
+         keyframe.points_camera.size() * sizeof(Eigen::Vector3f) +
+         keyframe.preview_depth_mm.pixels.size() * sizeof(std::uint16_t) +
+         std::min(keyframe.descriptors.size(), FeatureIndex::kIndexedFeatures) * kIndexed;
+}
+
 }  // namespace
 
 Mesh load_building_mesh(const BuildingInfo& info, const fs::path& folder) {
@@ -91,14 +101,6 @@ std::vector<std::size_t> distinct_views(std::span<const MapKeyframe> keyframes, 
     if (distinct.empty() || !(step() < min_step)) distinct.push_back(i);
   }
   return distinct;
-}
-
-std::size_t keyframe_bytes(const MapKeyframe& keyframe) {
-  constexpr std::size_t kIndexed = 128;  // bytes per indexed descriptor: 16 tables of 8 bytes
-  return sizeof(MapKeyframe) + keyframe.descriptors.size() * sizeof(Descriptor) +
-         keyframe.points_camera.size() * sizeof(Eigen::Vector3f) +
-         keyframe.preview_depth_mm.pixels.size() * sizeof(std::uint16_t) +
-         std::min(keyframe.descriptors.size(), FeatureIndex::kIndexedFeatures) * kIndexed;
 }
 
 namespace {

@@ -29,10 +29,6 @@ StaticMap load_building_octree(const BuildingInfo& info, const std::filesystem::
 KeyframeDatabase load_building_keyframes(const BuildingInfo& info, const std::filesystem::path& folder,
                                          std::size_t max_bytes = 0);
 
-/// Returns the memory of a keyframe with its share of the index, in bytes. A frame of 640 x 480 pixels with
-/// 800 features has 112,000.
-std::size_t keyframe_bytes(const MapKeyframe& keyframe);
-
 /// Returns the indices of the keyframes, in order, whose view_distance() from the last one returned is at
 /// least `min_step`. The first keyframe is always among them.
 std::vector<std::size_t> distinct_views(std::span<const MapKeyframe> keyframes, double min_step);

@@ -19,6 +19,15 @@ constexpr double kUnknownLoadingBytes = 4e6;
 constexpr double kMeshExpansion =
     3.0;  // mesh, its file and its tree while they are made, per byte of the file
 
+/// Returns the distance (m) of the bounding box of a tile's surface from the camera, or from the camera's
+/// position after ahead_s, whichever is less.
+double tile_distance_m(const BuildingTile& tile, const Eigen::Vector3d& position_world,
+                       const Eigen::Vector3d& velocity_world_mps, const TileChoiceConfig& config) {
+  const Eigen::Vector3d ahead_world = position_world + config.ahead_s * velocity_world_mps;
+  return std::min(tile.surface_world.exteriorDistance(position_world),
+                  tile.surface_world.exteriorDistance(ahead_world));
+}
+
 }  // namespace
 
 void require_valid(const TileChoiceConfig& config) {
@@ -37,13 +46,6 @@ std::size_t tile_bytes(const BuildingTile& tile, bool has_unknown) {
 std::size_t loading_bytes(const BuildingTile& tile, bool has_unknown) {
   const double unknown = has_unknown ? kUnknownLoadingBytes : 0.0;
   return static_cast<std::size_t>(kMeshExpansion * static_cast<double>(tile.mesh.bytes) + unknown);
-}
-
-double tile_distance_m(const BuildingTile& tile, const Eigen::Vector3d& position_world,
-                       const Eigen::Vector3d& velocity_world_mps, const TileChoiceConfig& config) {
-  const Eigen::Vector3d ahead_world = position_world + config.ahead_s * velocity_world_mps;
-  return std::min(tile.surface_world.exteriorDistance(position_world),
-                  tile.surface_world.exteriorDistance(ahead_world));
 }
 
 std::vector<std::size_t> tiles_in_view(const BuildingInfo& building, const Eigen::Vector3d& position_world,

@@ -41,11 +41,6 @@ std::size_t tile_bytes(const BuildingTile& tile, bool has_unknown);
 /// Returns the approximate memory that loading a tile takes in addition to tile_bytes(), in bytes.
 std::size_t loading_bytes(const BuildingTile& tile, bool has_unknown);
 
-/// Returns the distance (m) of the bounding box of a tile's surface from the camera, or from the camera's
-/// position after ahead_s, whichever is less.
-double tile_distance_m(const BuildingTile& tile, const Eigen::Vector3d& position_world,
-                       const Eigen::Vector3d& velocity_world_mps, const TileChoiceConfig& config);
-
 /// Returns the tiles whose surface may be in view: at least 5 % of the rays from the camera to the points
 /// enter the surface's bounding box. Tiles with the most such rays are first. The depth along these rays is
 /// unknown until the tile is loaded; see hide_behind().

@@ -647,8 +647,7 @@ void assign_lamps(Room& building, const LampsOfParts& lamps) {
   }
 }
 
-}  // namespace
-
+/// Makes a single furnished room of a building, at its pose in the building.
 Room make_building_room(const BuildingPlan& plan, int number) {
   const PlannedRoom& planned = plan.rooms[static_cast<std::size_t>(number)];
   const double aside_m = planned.door_aside_m;
@@ -666,6 +665,8 @@ Room make_building_room(const BuildingPlan& plan, int number) {
     *p += shift;
   return room;
 }
+
+}  // namespace
 
 Room make_building(const BuildingPlan& plan, int walk, bool crate) {
   Room building;

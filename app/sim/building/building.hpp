@@ -12,7 +12,4 @@ namespace roomradar {
 /// @param crate  true: adds a crate on the ball's path, as in make_room()
 Room make_building(const BuildingPlan& plan, int walk, bool crate = false);
 
-/// Makes a single furnished room of a building, at its pose in the building.
-Room make_building_room(const BuildingPlan& plan, int number);
-
 }  // namespace roomradar

@@ -60,6 +60,12 @@ PatchNoise make_patch_noise(const Intrinsics& camera, std::uint64_t key, KinectS
   return noise;
 }
 
+/// Rounds a depth to the nearest disparity that the Kinect can represent.
+double quantised_depth_m(const Intrinsics& camera, double depth_m) {
+  const double scale = kSubpixels * disparity_scale(camera);
+  return scale / std::max(std::round(scale / depth_m), 1.0);
+}
+
 }  // namespace
 
 PlanePoint<double> ray_of(const PixelRays& rays, int x, int y) {
@@ -114,11 +120,6 @@ void render_exact(std::span<const Solid> solids, const ViewCaster& view, const I
 
 double quantisation_step_m(const Intrinsics& camera, double depth_m) {
   return depth_m * depth_m / (kSubpixels * disparity_scale(camera));
-}
-
-double quantised_depth_m(const Intrinsics& camera, double depth_m) {
-  const double scale = kSubpixels * disparity_scale(camera);
-  return scale / std::max(std::round(scale / depth_m), 1.0);
 }
 
 void measure_depth(const InfraredSolids& lit, const DepthCameraView& view, const DepthErrors& errors,

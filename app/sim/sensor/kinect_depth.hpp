@@ -53,9 +53,6 @@ void clear(const Intrinsics& camera, ExactView& exact);
 /// width. Source: Khoshelham and Elberink, Sensors 2012, equation (5).
 double quantisation_step_m(const Intrinsics& camera, double depth_m);
 
-/// Rounds a depth to the nearest disparity that the Kinect can represent.
-double quantised_depth_m(const Intrinsics& camera, double depth_m);
-
 /// Calibration errors of the depth camera, see SensorFaults. Empty images: no errors.
 struct DepthFaults {
   PixelRays rays;

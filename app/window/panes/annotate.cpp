@@ -33,6 +33,15 @@ void draw_label(ImDrawList& draw, ImVec2 at, const std::string& text, ImU32 colo
   look::note(draw, at, text, colour, fonts);
 }
 
+/// Draws the twelve edges of a box. `corner(i)` returns corner i, for which bits 0, 1 and 2 of i select min
+/// or max of x, y and z.
+void draw_box(ImDrawList& draw, const std::function<Eigen::Vector3d(int)>& corner, const ToWindow& to_window,
+              ImU32 colour, float thickness) {
+  for (int i = 0; i < 8; ++i)
+    for (const int bit : {1, 2, 4})
+      if ((i & bit) == 0) draw_line(draw, corner(i), corner(i | bit), to_window, colour, thickness);
+}
+
 }  // namespace
 
 std::string what_it_does(const ShownObject& object) {
@@ -75,13 +84,6 @@ void mark_chosen(ImDrawList& draw, const Snapshot& shown, const Area& image, dou
   draw_label(draw, {left + look::px(5.0F), bottom + look::px(7.0F)},
              found->name + ": " + what_it_does(*found), look::kText, fonts);
   draw.PopClipRect();
-}
-
-void draw_box(ImDrawList& draw, const std::function<Eigen::Vector3d(int)>& corner, const ToWindow& to_window,
-              ImU32 colour, float thickness) {
-  for (int i = 0; i < 8; ++i)
-    for (const int bit : {1, 2, 4})
-      if ((i & bit) == 0) draw_line(draw, corner(i), corner(i | bit), to_window, colour, thickness);
 }
 
 void draw_target_volume(ImDrawList& draw, const ShownRadar& radar, const ToWindow& to_window,

@@ -20,11 +20,6 @@ using ToWindow = std::function<std::optional<ImVec2>(const Eigen::Vector3d& p_wo
 void mark_chosen(ImDrawList& draw, const Snapshot& shown, const Area& image, double scale,
                  const look::Fonts& fonts);
 
-/// Draws the twelve edges of a box. `corner(i)` returns corner i, for which bits 0, 1 and 2 of i select min
-/// or max of x, y and z.
-void draw_box(ImDrawList& draw, const std::function<Eigen::Vector3d(int)>& corner, const ToWindow& to_window,
-              ImU32 colour, float thickness);
-
 /// Draws the target volume that the radar searched, with rear plane, far plane and direction, and the first
 /// contact.
 void draw_target_volume(ImDrawList& draw, const ShownRadar& radar, const ToWindow& to_window,
