@@ -237,20 +237,14 @@ StatedPose read_pose_file(const fs::path& path) {
   const std::string name = path.string();
   std::vector<double> m;
   try {
-    std::istringstream file(read_bytes(path, "a 4 x 4 pose", kMaxPose_bytes));
-    for (std::string line; std::getline(file, line);) {
-      // As numpy and spreadsheets write matrices.
-      std::replace_if(line.begin(), line.end(), [](char c) { return std::string_view(",;[]").find(c) != std::string_view::npos; }, ' ');
-      for (const std::string_view word : split_words(line)) {
-        const auto value = parse_number(word);
-        if (!value) return {{}, name + ": '" + std::string(word.substr(0, 40)) + "' is not a number"};
-        if (m.size() == 16) return {{}, name + ": has more than 16 numbers; must be a 4 x 4 pose"};
-        m.push_back(*value);
-      }
-    }
+    std::string text = read_bytes(path, "a 4 x 4 pose", kMaxPose_bytes);
+    for (char& c : text)  // as NumPy and spreadsheets write matrices
+      if (c == ',' || c == ';' || c == '[' || c == ']') c = ' ';
+    m = parse_numbers(text, name);
   } catch (const Error& fault) {
     return {{}, fault.what()};
   }
+  if (m.size() > 16) return {{}, name + ": has more than 16 numbers; must be a 4 x 4 pose"};
   if (m.size() == 12) m.insert(m.end(), {0.0, 0.0, 0.0, 1.0});
   if (m.size() != 16)
     return {{},
