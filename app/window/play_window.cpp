@@ -172,15 +172,7 @@ void PlayUi::draw_waiting(const Area& area) {
 void PlayUi::draw_bar(const Area& area, bool has_two_rows) {
   look::begin_pane("bar", area, look::kPanel);
   const float gap = look::px(has_two_rows ? 3.0F : 8.0F), wide_gap = look::px(has_two_rows ? 8.0F : 12.0F);
-  if (!has_two_rows) {
-    ImGui::PushFont(fonts_.large);
-    ImGui::AlignTextToFramePadding();
-    ImGui::PushStyleColor(ImGuiCol_Text, look::kAccent);
-    ImGui::TextUnformatted("roomradar");
-    ImGui::PopStyleColor();
-    ImGui::PopFont();
-    ImGui::SameLine(0.0F, wide_gap);
-  }
+  if (!has_two_rows) look::title("roomradar", wide_gap, fonts_);
   const auto button = [&](const char* label, const char* key, bool is_lit) {
     const bool is_clicked = look::button(label, has_two_rows ? "" : key, is_lit);
     ImGui::SameLine(0.0F, gap);

@@ -97,6 +97,16 @@ void begin_cover(const char* name, float width, float height) {
   ImGui::PopStyleColor();
 }
 
+void title(const char* text, float gap, const Fonts& fonts) {
+  ImGui::PushFont(fonts.large);
+  ImGui::AlignTextToFramePadding();
+  ImGui::PushStyleColor(ImGuiCol_Text, kAccent);
+  ImGui::TextUnformatted(text);
+  ImGui::PopStyleColor();
+  ImGui::PopFont();
+  ImGui::SameLine(0.0F, gap);
+}
+
 void heading(const char* text, const Fonts& fonts) {
   ImGui::Dummy({0.0F, px(3.0F)});
   ImGui::PushFont(fonts.small);

@@ -40,6 +40,9 @@ void end_pane();
 /// afterwards.
 void begin_cover(const char* name, float width, float height);
 
+/// Draws the title of a bar, followed by a gap in window pixels.
+void title(const char* text, float gap, const Fonts& fonts);
+
 /// Draws the small heading of a group.
 void heading(const char* text, const Fonts& fonts);
 

@@ -303,15 +303,7 @@ void ScanUi::draw(float width, float height) {
 void ScanUi::draw_bar(const Area& area) {
   look::begin_pane("bar", area, look::kPanel);
   const bool is_narrow = area.width < look::px(900.0F);
-  if (!is_narrow) {
-    ImGui::PushFont(fonts_.large);
-    ImGui::AlignTextToFramePadding();
-    ImGui::PushStyleColor(ImGuiCol_Text, look::kAccent);
-    ImGui::TextUnformatted("roomradar scan");
-    ImGui::PopStyleColor();
-    ImGui::PopFont();
-    ImGui::SameLine(0.0F, look::px(22.0F));
-  }
+  if (!is_narrow) look::title("roomradar scan", look::px(22.0F), fonts_);
   const auto button = [&](const char* label, const char* key_name, int key, bool is_lit, bool enabled) {
     if (look::button(label, is_narrow ? "" : key_name, is_lit, {0, 0}, enabled)) press_key(key, 0);
     ImGui::SameLine(0.0F, look::px(8.0F));

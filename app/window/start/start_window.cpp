@@ -354,13 +354,7 @@ void StartUi::draw(float width, float height) {
 
 void StartUi::draw_bar(const Area& area) {
   look::begin_pane("bar", area, look::kPanel);
-  ImGui::PushFont(fonts_.large);
-  ImGui::AlignTextToFramePadding();
-  ImGui::PushStyleColor(ImGuiCol_Text, look::kAccent);
-  ImGui::TextUnformatted("roomradar");
-  ImGui::PopStyleColor();
-  ImGui::PopFont();
-  ImGui::SameLine(0.0F, look::px(22.0F));
+  look::title("roomradar", look::px(22.0F), fonts_);
   ImGui::AlignTextToFramePadding();
   const float wide = ImGui::GetContentRegionAvail().x - look::px(20.0F);
   if (!work_.empty())
