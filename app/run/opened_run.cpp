@@ -330,6 +330,7 @@ std::unique_ptr<OpenedRun> open_run(const RunOptions& options, UiChannel* link) 
   open_session(run, config_of(run, has_picture, std::move(tiles)), std::move(first_object));
   std::unique_ptr<FrameSink> video = video_sink(options);
   std::unique_ptr<FrameSink> pictures = picture_sink(options);
+  std::unique_ptr<FrameSink> stream = stream_sink(options);
   // Last, so that a run that fails to open leaves no folder that blocks the next attempt.
   record_frames(run, frames);
   play_frames(run, std::move(frames));
@@ -337,7 +338,7 @@ std::unique_ptr<OpenedRun> open_run(const RunOptions& options, UiChannel* link) 
   add(std::move(video), run.sinks);
   add(frame_use_sink(options), run.sinks);
   add(trajectory_sink(options), run.sinks);
-  add(stream_sink(options), run.sinks);
+  add(std::move(stream), run.sinks);
   add(std::move(pictures), run.sinks);
   if (link != nullptr)
     run.host.emplace(*link, *run.session, *run.playback, run.report.times, shown_room(run.map), run.is_live);

@@ -12,14 +12,14 @@
 namespace roomradar {
 namespace {
 
-constexpr std::uint32_t kNone = ~std::uint32_t{0};
+constexpr std::uint32_t kNoCell = ~std::uint32_t{0};
 constexpr int kAllRound = 7;  // neighbours of an interior cell, of eight in a flat surface
 
 /// Returns the slot of a cell in the hash table, or the empty slot where it belongs.
 std::uint32_t find_cell(const ChangeClusters& clusters, std::uint64_t code) {
   const std::size_t mask = clusters.table.size() - 1;
   for (std::size_t at = (code * 0x9E37'79B9'7F4A'7C15U) >> 32U & mask;; at = (at + 1) & mask)
-    if (clusters.table[at] == kNone || clusters.cells[clusters.table[at]].code == code)
+    if (clusters.table[at] == kNoCell || clusters.cells[clusters.table[at]].code == code)
       return static_cast<std::uint32_t>(at);
 }
 
@@ -53,9 +53,9 @@ void sort_into_cells(std::span<const ChangePoint> points, LastingKind kind, floa
                      ChangeClusters& clusters) {
   std::size_t places = 64;
   while (places < 2 * points.size()) places *= 2;
-  clusters.table.assign(places, kNone);
+  clusters.table.assign(places, kNoCell);
   clusters.cells.clear();
-  clusters.cell_of.assign(points.size(), kNone);
+  clusters.cell_of.assign(points.size(), kNoCell);
   const auto index_of = [&](float x) { return static_cast<std::int64_t>(std::floor(x / link_m)); };
   for (std::size_t i = 0; i < points.size(); ++i) {
     const ChangePoint& point = points[i];
@@ -63,7 +63,7 @@ void sort_into_cells(std::span<const ChangePoint> points, LastingKind kind, floa
     const std::uint64_t code =
         voxel_key(index_of(point.position.x()), index_of(point.position.y()), index_of(point.position.z()));
     const std::uint32_t at = find_cell(clusters, code);
-    if (clusters.table[at] == kNone) {
+    if (clusters.table[at] == kNoCell) {
       clusters.table[at] = static_cast<std::uint32_t>(clusters.cells.size());
       clusters.cells.push_back({.code = code, .joined_to = clusters.table[at], .steady = false});
     }
@@ -76,7 +76,7 @@ void sort_into_cells(std::span<const ChangePoint> points, LastingKind kind, floa
       const std::uint32_t beside =
           clusters
               .table[find_cell(clusters, clusters.cells[cell].code + voxel_key(neighbour_offset(n)) - zero)];
-      if (beside == kNone) continue;
+      if (beside == kNoCell) continue;
       ++clusters.cells[cell].neighbours;
       ++clusters.cells[beside].neighbours;
       const std::uint32_t a = object_of(clusters.cells, cell), b = object_of(clusters.cells, beside);
@@ -96,7 +96,7 @@ void add_objects(std::span<const ChangePoint> points, LastingKind kind, const Ei
     object.core_cells += clusters.cells[cell].neighbours >= kAllRound ? 1 : 0;
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (clusters.cell_of[i] == kNone) continue;
+    if (clusters.cell_of[i] == kNoCell) continue;
     ChangeObject& object = clusters.objects[object_of(clusters.cells, clusters.cell_of[i])];
     ++object.points;
     object.seen_points += points[i].as_it_was ? 1 : 0;
@@ -117,7 +117,7 @@ void add_objects(std::span<const ChangePoint> points, LastingKind kind, const Ei
     object.change = changes.size();
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (clusters.cell_of[i] == kNone) continue;
+    if (clusters.cell_of[i] == kNoCell) continue;
     const std::size_t change = clusters.objects[object_of(clusters.cells, clusters.cell_of[i])].change;
     if (change == 0) continue;
     changes[change - 1].points_world.emplace_back(origin_world + points[i].position.cast<double>());

@@ -222,7 +222,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns fork(). With the address sanitizer returns -1: its allocator may be locked by another thread, and
+/// A checkpoint of a flat of ten minutes takes some seconds.
+constexpr unsigned kLongestWrite_s = 300;
+
+/// Returns fork(). What the child may use, and why, is in app/decisions/checkpoints-by-a-forked-child.md. With
+/// the address sanitizer returns -1: its allocator may be locked by another thread, and
 /// would stay locked in the child.
 pid_t fork_writer() {
 #ifdef __SANITIZE_ADDRESS__
@@ -351,6 +355,8 @@ void Checkpoints::write(const std::string& stage, const WriteFiles& write_files)
     return;
   }
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  std::signal(SIGALRM, SIG_DFL);
+  ::alarm(kLongestWrite_s);  // a child that hangs is ended, and counts as not written
   std::signal(SIGINT, SIG_IGN);  // the parent decides whether to continue after Ctrl-C
   if (::getppid() != parent) ::_exit(1);
   static_cast<void>(::nice(5) + 1);
