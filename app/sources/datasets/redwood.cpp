@@ -172,6 +172,7 @@ RecordingFacts registered_images(const fs::path& folder, const fs::path& colour_
                                  DepthEncoding encoding, std::vector<std::int64_t>& numbers) {
   RecordingFacts facts{.name = fs::canonical(folder).string()};
   facts.is_written_by_many = true;
+  facts.unit_source = "millimetres, by the formats of Redwood and Open3D";
   const auto colours = numbered_files(colour_images, {".jpg", ".jpeg", ".png"});
   std::vector<fs::path> depth_paths, colour_paths;
   for (const auto& [number, path] : numbered_files(depth_folder(folder), {".png"})) {

@@ -369,6 +369,21 @@ DepthDifference mean_difference(const std::vector<Pair>& pairs, Samples& samples
   return mean;
 }
 
+/// Returns the disagreement of depth plus that of brightness of each pair whose frames have poses.
+std::vector<double> pair_disagreements(const std::vector<Pair>& pairs, Samples& samples,
+                                       const PoseOf& pose_of_position, double depth_factor,
+                                       const CameraError& error) {
+  std::vector<double> disagreements;
+  const Intrinsics camera = without_error(samples.camera(), error);
+  for_each_posed_pair(
+      pairs, samples, pose_of_position, depth_factor, error,
+      [&](const Sample& a, const Sample& b, const Eigen::Isometry3d& T_b_a) {
+        disagreements.push_back(depth_difference(a.depth_m, b.depth_m, camera, T_b_a).disagreement +
+                                brightness_disagreement(a, b, camera, T_b_a).value_or(0.0));
+      });
+  return disagreements;
+}
+
 std::string mm_text(double length_m) { return format_readable(1000.0 * length_m, 2) + " mm"; }
 
 // ---- depth alone ----
@@ -478,6 +493,7 @@ struct Hypothesis {
   double near = 1.0, far = 1.0;  ///< DepthDifference::disagreement over near and far pairs
   double brightness = 0.0;       ///< mean_brightness_disagreement() over far pairs; 0 if there is no texture
   double median_m = 0.0;         ///< DepthDifference::median_m over near pairs
+  bool is_clear = true;          ///< most pairs agree better under it
   [[nodiscard]] double both() const { return 0.5 * (near + far + brightness); }
 };
 
@@ -540,7 +556,7 @@ constexpr std::array kFitted = {
 std::optional<Hypothesis> fit(const Fitted& fitted, const Hypothesis& now,
                               const std::function<void(Hypothesis&)>& measure) {
   constexpr int kMostRounds = 8;
-  constexpr double kLeastGain = 0.06;
+  constexpr double kLeastGain = 0.06, kLargeAmount = 3.6, kLeastMedianGain = 0.1;
   Hypothesis fit = now;
   Eigen::Vector3d amount = Eigen::Vector3d::Zero();
   double step = fitted.step;
@@ -560,7 +576,11 @@ std::optional<Hypothesis> fit(const Fitted& fitted, const Hypothesis& now,
     else
       fit = best, amount += best_by;
   }
-  if (fit.both() > now.both() - kLeastGain || amount.norm() < fitted.least) return std::nullopt;
+  // A large amount with a small gain is one that the motion does not determine.
+  const double least_gain = kLeastGain * std::max(1.0, amount.norm() / (kLargeAmount * fitted.least));
+  if (fit.both() > now.both() - least_gain || amount.norm() < fitted.least ||
+      fit.median_m > (1.0 - kLeastMedianGain) * now.median_m)
+    return std::nullopt;
   return fit;
 }
 
@@ -601,6 +621,11 @@ void adopt_or_advise(DecidedRecording& recording, const Hypothesis& now, const H
   DepthEvidence& evidence = *recording.evidence;
   InputReport& report = *recording.report;
   const bool have_times = recording.facts.pose_track || recording.facts.has_pose_times;
+  // A short recording is one motion, of which a fault of scale or camera may explain what noise has done.
+  constexpr std::size_t kLong = 150;
+  constexpr double kMuchBetter = 0.15;
+  const bool is_sure =
+      best.is_clear && (recording.frames.size() >= kLong || best.both() < now.both() - kMuchBetter);
   if (best.convention.later_by != 0 && have_times) {
     const std::size_t last = recording.frames.size() - 1;
     const double period_s =
@@ -618,11 +643,11 @@ void adopt_or_advise(DecidedRecording& recording, const Hypothesis& now, const H
                 "depth agrees with the recorded poses if it is multiplied by about " +
                     format_readable(best.depth_factor, 2) + "; is the unit of depth " +
                     format_readable(unit_m, 3) + " m, or that of the poses another one?",
-                0, unit_option(unit_m), true});
+                0, unit_option(unit_m), is_sure});
   } else if (const auto other = other_camera(camera, best.camera)) {
     report.add({"camera",
                 "depth of nearby frames agrees better " + *other + " (" + recording.facts.camera_source + ")",
-                0, "--camera FILE", true});
+                0, "--camera FILE", is_sure});
   } else if (const auto place = other_place(best.camera)) {
     report.add({"poses",
                 "depth of nearby frames differs by " + mm_text(now.median_m) +
@@ -630,7 +655,7 @@ void adopt_or_advise(DecidedRecording& recording, const Hypothesis& now, const H
                     " if the depth camera is " + *place +
                     "; are they the poses of another frame than the depth camera's?" +
                     (recording.poses_are_used ? "" : " They are not used"),
-                0, "--poses tracked", true});
+                0, "--poses tracked", is_sure});
   } else {
     const std::string found = "depth of nearby frames differs by " + mm_text(now.median_m) +
                               " under the recorded poses, but by " + mm_text(best.median_m) +
@@ -695,12 +720,15 @@ void question_poses(DecidedRecording& recording, const std::vector<Pair>& near_p
   evidence.pose_disagreement = now.near;
   evidence.far_pose_disagreement = now.far;
   evidence.pose_difference_m = now.median_m;
-  evidence.is_scale_confirmed = true;
-  for (const double factor : {0.5, 2.0}) {
-    Hypothesis scaled{.convention = now.convention, .depth_factor = factor};
-    measure(scaled, near_pairs, far_pairs);
-    evidence.is_scale_confirmed &= scaled.both() > now.both() + kClearlyBetter;
-  }
+  const auto confirm_scale = [&](const Hypothesis& right) {
+    evidence.is_scale_confirmed = true;
+    for (const double factor : {0.5, 2.0}) {
+      Hypothesis scaled{.convention = right.convention, .depth_factor = factor};
+      measure(scaled, near_pairs, far_pairs_of(right.convention));
+      evidence.is_scale_confirmed &= scaled.both() > right.both() + kClearlyBetter;
+    }
+  };
+  confirm_scale(now);
   if (now.near < kSurelyAgrees && now.far < kSurelyAgrees) return;
 
   // Poses of other frames exist for other pairs: a shift is compared with the poses as recorded on the pairs
@@ -744,17 +772,39 @@ void question_poses(DecidedRecording& recording, const std::vector<Pair>& near_p
   // Different faults may explain the differences alike: all that come near the best one are named.
   constexpr double kAlike = 0.03;
   std::vector<Hypothesis> fits;
+  const auto of_all_pairs = [&](const Hypothesis& hypothesis) {
+    std::vector<double> all;
+    for (const auto* pairs : {&near_pairs, &far_pairs})
+      for (const double one : pair_disagreements(*pairs, samples, under(hypothesis.convention),
+                                                 hypothesis.depth_factor, hypothesis.camera))
+        all.push_back(one);
+    return all;
+  };
+  const std::vector<double> as_recorded = of_all_pairs(now);
+  // A fault of the camera shows in nearly all pairs; noise helps some and harms others.
+  const auto is_better_in_most = [&](const Hypothesis& hypothesis) {
+    constexpr double kBetter = 0.01, kMostPairs = 0.7;
+    const std::vector<double> fitted = of_all_pairs(hypothesis);
+    std::size_t better = 0;
+    for (std::size_t k = 0; k < fitted.size(); ++k) better += fitted[k] < as_recorded[k] - kBetter ? 1 : 0;
+    return static_cast<double>(better) >= kMostPairs * static_cast<double>(fitted.size());
+  };
   for (const Fitted& fitted : kFitted)
     if (const auto fitting =
-            fit(fitted, now, [&](Hypothesis& next) { measure(next, near_pairs, far_pairs); }))
+            fit(fitted, now, [&](Hypothesis& next) { measure(next, near_pairs, far_pairs); });
+        fitting) {
       fits.push_back(*fitting);
+      fits.back().is_clear = is_better_in_most(*fitting);
+    }
   std::sort(fits.begin(), fits.end(),
             [](const Hypothesis& a, const Hypothesis& b) { return a.both() < b.both(); });
   if (!fits.empty() && fits.front().both() < best.both()) best = fits.front();
   std::erase_if(fits, [&](const Hypothesis& each) { return each.both() > best.both() + kAlike; });
   if (best.both() < now.both() && best.near < kAgrees) {
-    if (fits.empty() || fits.front().both() > best.both())
+    if (fits.empty() || fits.front().both() > best.both()) {
+      confirm_scale(best);
       return adopt_or_advise(recording, now, best, samples.full_camera(), is_convention_given);
+    }
     for (const Hypothesis& each : fits)
       adopt_or_advise(recording, now, each, samples.full_camera(), is_convention_given);
     return;
@@ -927,11 +977,14 @@ void question_depth(DecidedRecording& recording, bool is_convention_given) {
     return decision.topic == "unit" && decision.is_advice;
   });
   if (facts.is_written_by_many && !is_stated && !evidence.is_scale_confirmed && !is_asked)
-    recording.report->add({"unit",
-                           "nothing in the recording confirms a unit of depth of " +
-                               format_general(recording.depth_unit_m, 4) + " m (" + facts.unit_source +
-                               "): " + (posed >= 3 ? "its poses hardly move" : "it has no poses"),
-                           0, "--depth-unit M"});
+    recording.report->add(
+        {"unit",
+         "nothing in the recording confirms a unit of depth of " + format_general(recording.depth_unit_m, 4) +
+             " m" + (facts.unit_source.empty() ? "" : " (" + facts.unit_source + ")") + ": it has no poses" +
+             (posed < 3                 ? ""
+              : evidence.poses_disagree ? " with which depth agrees"
+                                        : " between which the camera moves far enough sideways"),
+         0, "--depth-unit M"});
 }
 
 }  // namespace roomradar

@@ -294,9 +294,9 @@ std::vector<Mutation> mutations() {
 /// colour.
 bool is_indistinguishable(const std::string& recording, const std::string& mutation) {
   const bool has_no_poses = recording == "time of flight, no poses", only_turns = recording == "fr1_rpy",
-             has_no_colour = recording == "stray";
+             has_no_colour = recording == "stray", is_short = recording == "record3d";
   return (has_no_poses && (mutation.starts_with("unit") || mutation.ends_with("down"))) ||
-         ((has_no_poses || has_no_colour) && mutation == "focal length of y x 1.3") ||
+         ((has_no_poses || has_no_colour || is_short) && mutation == "focal length of y x 1.3") ||
          (only_turns && (mutation == "unit x 0.500000" || mutation == "poses mirrored"));
 }
 
