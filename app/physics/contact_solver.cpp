@@ -28,18 +28,18 @@ double energy(const Velocity& velocity, const Eigen::Matrix3d& inertia_m2) {
                 velocity.angular_rad_s.dot(inertia_m2 * velocity.angular_rad_s));
 }
 
-double energy(std::span<const SolverBody> bodies) {
+double energy(std::span<const SolverBody> bodies, std::span<const Velocity> velocities) {
   double sum_J = 0.0;
-  for (const SolverBody& body : bodies)
-    if (body.inverse_mass_per_kg > 0.0)
-      sum_J += energy(body.velocity, body.inertia_m2) / body.inverse_mass_per_kg;
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    if (bodies[i].inverse_mass_per_kg > 0.0)
+      sum_J += energy(velocities[i], bodies[i].inertia_m2) / bodies[i].inverse_mass_per_kg;
   return sum_J;
 }
 
-Eigen::Vector3d slip_at(const SolverContact& contact, std::span<const SolverBody> bodies) {
-  const Vec3 own = velocity_at(bodies[contact.body].velocity, contact.contact_offset_m);
-  if (contact.other >= bodies.size()) return own;
-  return own - velocity_at(bodies[contact.other].velocity, contact.other_offset_m);
+Eigen::Vector3d slip_at(const SolverContact& contact, std::span<const Velocity> velocities) {
+  const Vec3 own = velocity_at(velocities[contact.body], contact.contact_offset_m);
+  if (contact.other >= velocities.size()) return own;
+  return own - velocity_at(velocities[contact.other], contact.other_offset_m);
 }
 
 /// Returns the velocity along a row of the body relative to the other one.
@@ -75,13 +75,15 @@ void ContactSolver::find_systems(std::span<const SolverContact> contacts,
       if (is_movable(bodies, body)) system_of_contact_[i] = system_of_body_[body];
 }
 
-void ContactSolver::solve(std::span<SolverContact> contacts, std::span<SolverBody> bodies, double rolling) {
-  if (contacts.empty()) return;
+std::vector<Velocity> ContactSolver::solve(std::span<SolverContact> contacts,
+                                           std::span<const SolverBody> bodies,
+                                           std::vector<Velocity> velocities, double rolling) {
+  if (contacts.empty()) return velocities;
   find_systems(contacts, bodies);
   rolling_.assign(bodies.size(), {Vec3::Zero(), 0.0});
   twists_.clear();
-  for (const SolverBody& body : bodies)
-    twists_.push_back({with_zero(body.velocity.linear_mps), with_zero(body.velocity.angular_rad_s)});
+  for (const Velocity& velocity : velocities)
+    twists_.push_back({with_zero(velocity.linear_mps), with_zero(velocity.angular_rad_s)});
   twists_.emplace_back();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     if (system_of_contact_[i] != kNoOther) continue;
@@ -106,10 +108,11 @@ void ContactSolver::solve(std::span<SolverContact> contacts, std::span<SolverBod
                                         .head<3>();
     }
     for (const std::size_t member : members_) {
-      bodies[member].velocity.linear_mps = twists_[member].linear_mps.head<3>();
-      bodies[member].velocity.angular_rad_s = twists_[member].angular_rad_s.head<3>();
+      velocities[member].linear_mps = twists_[member].linear_mps.head<3>();
+      velocities[member].angular_rad_s = twists_[member].angular_rad_s.head<3>();
     }
   }
+  return velocities;
 }
 
 void ContactSolver::add_contact(std::size_t index, const SolverContact& contact,

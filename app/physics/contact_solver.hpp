@@ -16,8 +16,8 @@ struct Velocity {
   Eigen::Vector3d angular_rad_s = Eigen::Vector3d::Zero();
 };
 
+/// How a body yields to impulses.
 struct SolverBody {
-  Velocity velocity;
   double inverse_mass_per_kg = 0.0;  ///< 0: impulses do not move this body
   /// Inertia per kg about the centre of mass, in world axes, and its inverse.
   Eigen::Matrix3d inertia_m2 = Eigen::Matrix3d::Identity();
@@ -45,7 +45,8 @@ struct SolverContact {
 };
 
 /// Returns the velocity of the body's point at a contact relative to the other body or static surface.
-Eigen::Vector3d slip_at(const SolverContact& contact, std::span<const SolverBody> bodies);
+/// @param velocities  of all bodies; an `other` out of range means a static surface
+Eigen::Vector3d slip_at(const SolverContact& contact, std::span<const Velocity> velocities);
 
 /// Returns the velocity of the body at contact_offset_m from its centre of mass.
 inline Eigen::Vector3d velocity_at(const Velocity& velocity, const Eigen::Vector3d& contact_offset_m) {
@@ -56,25 +57,29 @@ inline Eigen::Vector3d velocity_at(const Velocity& velocity, const Eigen::Vector
 double energy(const Velocity& velocity, const Eigen::Matrix3d& inertia_m2);
 
 /// Returns the kinetic energy of the bodies that impulses move, J.
-double energy(std::span<const SolverBody> bodies);
+double energy(std::span<const SolverBody> bodies, std::span<const Velocity> velocities);
 
-/// Solves for contact impulses by projected Gauss-Seidel (sequential impulses) and applies them to the
-/// bodies' velocities. Each connected component of bodies in contact (island) is solved as one system. Sweeps
-/// end when none changes a velocity by 1e-8 m/s, and after 200. Each contact then separates at leaves_mps or
-/// faster and obeys Coulomb's friction law, within this tolerance. The impulses on the two bodies of a
-/// contact are opposite, so linear momentum is conserved. If leaves_mps <= 0 at all contacts and all guesses
-/// are 0, impulses add no energy.
+/// Solves for contact impulses by projected Gauss-Seidel (sequential impulses), and for the velocities that
+/// they give the bodies. Each connected component of bodies in contact (island) is solved as one system.
+/// Sweeps end when none changes a velocity by 1e-8 m/s, and after 200. Each contact then separates at
+/// leaves_mps or faster and obeys Coulomb's friction law, within this tolerance. The impulses on the two
+/// bodies of a contact are opposite, so linear momentum is conserved. If leaves_mps <= 0 at all contacts and
+/// all guesses are 0, impulses add no energy.
 ///
 /// Nonlinear conjugate gradients speed up the convergence of the sweeps. Sources: Catto, Iterative dynamics
 /// with temporal coherence, GDC 2005; Silcowitz, Niebe, Erleben, A nonsmooth nonlinear conjugate gradient
 /// method for interactive contact force problems, The Visual Computer 2010.
 class ContactSolver {
  public:
-  /// @param contacts  `body` and `other` are indices into `bodies`. An `other` out of range means a static
-  ///                  surface
-  /// @param rolling   rolling resistance coefficient. Max torque = rolling x normal force x distance of the
-  ///                  centre of mass from the contact's tangent plane (a ball's radius)
-  void solve(std::span<SolverContact> contacts, std::span<SolverBody> bodies, double rolling);
+  /// Sets the impulses of the contacts, and returns the velocities of the bodies after these impulses.
+  /// @param contacts    `body` and `other` are indices into `bodies`. An `other` out of range means a static
+  ///                    surface
+  /// @param velocities  before the impulses, one per body
+  /// @param rolling     rolling resistance coefficient. Max torque = rolling x normal force x distance of the
+  ///                    centre of mass from the contact's tangent plane (a ball's radius)
+  [[nodiscard]] std::vector<Velocity> solve(std::span<SolverContact> contacts,
+                                            std::span<const SolverBody> bodies,
+                                            std::vector<Velocity> velocities, double rolling);
 
  private:
   using Vec4 = Eigen::Vector4d;  ///< three coordinates and 0: one register of four numbers

@@ -13,10 +13,10 @@ namespace {
 using Vec3 = Eigen::Vector3d;
 constexpr double kCarried = 1e6;  // factor of a carried body's mass: other bodies hardly move the hand
 
-/// Returns the solver's state of a body; set_masses() sets its mass.
-SolverBody solver_body(const Body& body, const Velocity& velocity) {
+/// Returns the solver's view of a body; set_masses() sets its mass.
+SolverBody solver_body(const Body& body) {
   const Eigen::Matrix3d inertia_m2 = inertia_world_m2(body);
-  return {velocity, 0.0, inertia_m2, inertia_m2.inverse()};
+  return {0.0, inertia_m2, inertia_m2.inverse()};
 }
 
 /// Returns the solver index of a bystander.
@@ -25,8 +25,7 @@ std::size_t bystander_index(std::span<const MovingBody> bodies, const SceneBody&
   for (std::size_t i = 0; i < system.bystanders.size(); ++i)
     if (system.bystanders[i].body == scene_body.body) return bodies.size() + i;
   system.bystanders.push_back({scene_body.body, scene_body.mass_ratio / mass_kg});
-  const Body& body = *scene_body.body;
-  system.bodies.push_back(solver_body(body, {body.velocity_world_mps, body.angular_velocity_world_rad_s}));
+  system.bodies.push_back(solver_body(*scene_body.body));
   return system.bodies.size() - 1;
 }
 
@@ -115,12 +114,16 @@ void add_contacts(std::span<MovingBody> bodies, std::size_t index, const std::ve
   }
 }
 
+double inverse_mass_per_kg(const MovingBody& moving) {
+  return 1.0 / ((moving.is_carried ? kCarried : 1.0) * moving.mass_kg);
+}
+
 /// Returns true if something hits the body of this solver index faster than kNudge_mps.
-bool is_hit(std::size_t index, const ContactSystem& system) {
+bool is_hit(std::size_t index, std::span<const Velocity> velocities, const ContactSystem& system) {
   constexpr double kNudge_mps = 0.05;
   return std::any_of(system.contacts.begin(), system.contacts.end(), [&](const SolverContact& contact) {
     return (contact.other == index || contact.body == index) &&
-           -slip_at(contact, system.bodies).dot(contact.normal) > kNudge_mps;
+           -slip_at(contact, velocities).dot(contact.normal) > kNudge_mps;
   });
 }
 
@@ -147,7 +150,7 @@ void find_contacts(std::span<MovingBody> bodies, const PhysicsConfig& config, co
   system.push.clear();
   system.bodies.clear();
   system.bystanders.clear();
-  for (const MovingBody& moving : bodies) system.bodies.push_back(solver_body(*moving.body, moving.velocity));
+  for (const MovingBody& moving : bodies) system.bodies.push_back(solver_body(*moving.body));
   // Upwards, so that one sweep of the solver carries weight down to the lowest body.
   system.upwards.resize(bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) system.upwards[i] = i;
@@ -172,23 +175,27 @@ double left_s(std::span<const MovingBody> bodies, const SolverContact& contact) 
 }
 
 void set_masses(std::span<const MovingBody> bodies, Movable movable, ContactSystem& system) {
+  for (SolverBody& body : system.bodies) body.inverse_mass_per_kg = 0.0;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const MovingBody& moving = bodies[i];
-    const bool is_asleep = moving.body->asleep;
-    const bool is_known_sleeper = is_asleep && moving.contacts_known;
-    const bool takes_part =
-        movable == Movable::kAllButSleeping
-            ? !is_asleep || is_hit(i, system)
-            : is_active(moving) || (movable == Movable::kActiveAndKnownSleepers && is_known_sleeper);
-    system.bodies[i].inverse_mass_per_kg =
-        takes_part ? 1.0 / ((moving.is_carried ? kCarried : 1.0) * moving.mass_kg) : 0.0;
+    const bool is_known_sleeper = bodies[i].body->asleep && bodies[i].contacts_known;
+    if (is_active(bodies[i]) || (movable == Movable::kActiveAndKnownSleepers && is_known_sleeper))
+      system.bodies[i].inverse_mass_per_kg = inverse_mass_per_kg(bodies[i]);
   }
+}
+
+void set_masses_for_impacts(std::span<const MovingBody> bodies, std::span<const Velocity> velocities,
+                            ContactSystem& system) {
+  const auto takes_part = [&](const Body& body, std::size_t index) {
+    return !body.asleep || is_hit(index, velocities, system);
+  };
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    system.bodies[i].inverse_mass_per_kg =
+        takes_part(*bodies[i].body, i) ? inverse_mass_per_kg(bodies[i]) : 0.0;
   for (std::size_t i = 0; i < system.bystanders.size(); ++i) {
     const Bystander& bystander = system.bystanders[i];
     const std::size_t index = bodies.size() + i;
-    const bool takes_part =
-        movable == Movable::kAllButSleeping && (!bystander.body->asleep || is_hit(index, system));
-    system.bodies[index].inverse_mass_per_kg = takes_part ? bystander.inverse_mass_per_kg : 0.0;
+    system.bodies[index].inverse_mass_per_kg =
+        takes_part(*bystander.body, index) ? bystander.inverse_mass_per_kg : 0.0;
   }
 }
 

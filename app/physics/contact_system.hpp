@@ -63,7 +63,6 @@ struct MovingBody {
   double left_s = 0.0;  ///< time of the substep that remains to be simulated
   /// A surface other than the pushing one intersects the body. The contact solver then does not move it.
   bool crosses = false;
-  Velocity velocity{}, after{};       ///< before and after the second solve
   ClosestPoint limited_by{};          ///< feature that ended the body's last motion
   int stops_in_place = 0;             ///< motions in this substep that hardly moved the body
   bool contacts_known = false;        ///< sleeping bodies: contacts are in the system
@@ -132,12 +131,16 @@ void find_contacts(std::span<MovingBody> bodies, const PhysicsConfig& config, co
 
 /// Bodies that a solve moves. All others are immovable in it.
 enum class Movable {
-  kAllButSleeping,          ///< awake bodies, and sleeping bodies that another body hits faster than 5 cm/s
   kActiveAndKnownSleepers,  ///< active bodies, and sleeping bodies whose contacts are in the system
   kActive,
 };
-/// Sets the inverse masses of the solver bodies. kAllButSleeping needs their velocities.
+/// Sets the inverse masses of the solver bodies.
 void set_masses(std::span<const MovingBody> bodies, Movable movable, ContactSystem& system);
+/// Sets the inverse masses of the solver bodies for impacts. These move awake bodies, and sleeping bodies
+/// that another body hits faster than 5 cm/s.
+/// @param velocities  of the solver bodies, before the impacts
+void set_masses_for_impacts(std::span<const MovingBody> bodies, std::span<const Velocity> velocities,
+                            ContactSystem& system);
 
 /// Returns the longer left_s (s) of a contact's two bodies; dt_s if neither has time left. Always > 0.
 double left_s(std::span<const MovingBody> bodies, const SolverContact& contact);

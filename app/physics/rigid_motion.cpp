@@ -6,7 +6,9 @@
 #include <array>
 #include <cmath>
 #include <list>
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "app/physics/contact_queries.hpp"
@@ -158,8 +160,11 @@ struct Load {
   SurfaceKind any_kind = SurfaceKind::kNothing;
 };
 
-}  // namespace
-
+/// Sets is_held_up, rests_on and touches of each active body from the impulses of the support solve. A body
+/// is held up by surfaces within 60 degrees of level. A body is also held up if all contacts together bear at
+/// least 90 % of its weight, as at a keystone.
+/// @param up_world  unit, against gravity. Zero without gravity; then nothing is held up
+/// @param results   one per body, in order. Other fields are unchanged
 void note_support(std::span<const MovingBody> bodies, const PhysicsConfig& config,
                   const Eigen::Vector3d& up_world, const ContactSystem& system,
                   std::vector<SubstepResult>& results) {
@@ -202,6 +207,8 @@ void note_support(std::span<const MovingBody> bodies, const PhysicsConfig& confi
   }
 }
 
+/// Adds the impacts of the last solve to the bodies' reports. Simultaneous impacts of a body on one kind of
+/// surface count once.
 void count_impacts(std::span<const MovingBody> bodies, const ContactSystem& system) {
   std::vector<std::array<bool, kSurfaceKinds>> is_met(bodies.size());
   for (std::size_t i = 0; i < system.contacts.size(); ++i) {
@@ -215,8 +222,6 @@ void count_impacts(std::span<const MovingBody> bodies, const ContactSystem& syst
     for (std::size_t kind = 0; kind < kSurfaceKinds; ++kind)
       if (is_met[i][kind]) note_contact(static_cast<SurfaceKind>(kind), *bodies[i].report);
 }
-
-namespace {
 
 using Vec3 = Eigen::Vector3d;
 
@@ -244,7 +249,11 @@ void wake(MovingBody& sleeper) {
   sleeper.report->woke = true;
 }
 
-/// State of one substep.
+/// Velocities of the solver's bodies: of the substep's bodies, then of the bystanders.
+using Velocities = std::vector<Velocity>;
+
+/// Simulation of one substep. Its solves take velocities and return velocities; only run() keeps them. The
+/// functions set the bounds, guesses and masses of the system's contacts and bodies before they solve.
 class Substep {
  public:
   Substep(std::span<MovingBody> bodies, const PhysicsConfig& config, ContactSystem& system,
@@ -258,35 +267,74 @@ class Substep {
   const PhysicsConfig& config_;
   ContactSystem& system_;
   std::vector<SubstepResult>& results_;
-  std::vector<Velocity> rises_;  ///< per body: part of its motion that lifts it over bumps; empty: none
   const Vec3 up_ = -config_.gravity_world_mps2.stableNormalized();  // zero without gravity
 
-  [[nodiscard]] bool is_member(std::size_t solver_index) const { return solver_index < bodies_.size(); }
-  void solve(double rolling) { system_.solver.solve(system_.contacts, system_.bodies, rolling); }
+  [[nodiscard]] bool is_movable(std::size_t solver_index) const {
+    return system_.bodies[solver_index].inverse_mass_per_kg > 0.0;
+  }
+  [[nodiscard]] Velocities at_rest() const { return Velocities(system_.bodies.size()); }
+  [[nodiscard]] Velocities solved(Velocities velocities, double rolling) {
+    return system_.solver.solve(system_.contacts, system_.bodies, std::move(velocities), rolling);
+  }
 
-  [[nodiscard]] bool bounce();
-  [[nodiscard]] bool note_impacts();
-  void hold_up(bool keeps_impulses);
-  void wake_unbalanced_sleepers();
-  void find_balanced();
-  void move();
-  [[nodiscard]] std::vector<RigidMotion> motions();
+  [[nodiscard]] Velocities begin();
+  [[nodiscard]] Velocities with_bystanders(Velocities of_members) const;
+  [[nodiscard]] std::optional<Velocities> bounce(const Velocities& velocities);
+  void give_bystanders(const Velocities& velocities) const;
+  [[nodiscard]] bool wake_hit_sleepers();
+  [[nodiscard]] Velocities hold_up(Velocities velocities, bool keeps_impulses);
+  void wake_unbalanced_sleepers(const Velocities& after);
+  void find_balanced(const Velocities& velocities);
+  [[nodiscard]] Velocities mean_velocities(const Velocities& before, const Velocities& after);
   void follow_features();
-  [[nodiscard]] std::vector<Velocity> corrections();
-  [[nodiscard]] std::vector<Velocity> mean_velocities();
-  void find_rises(const std::vector<Velocity>& means);
-  void settle(const std::vector<double>& gone_s);
+  [[nodiscard]] Velocities rises(const Velocities& means);
+  [[nodiscard]] Velocities corrections();
+  [[nodiscard]] std::vector<RigidMotion> motions(const Velocities& means, const Velocities& rises,
+                                                 const Velocities& lifts) const;
+  [[nodiscard]] std::vector<Eigen::Matrix3d> inertias_m2() const;
+  [[nodiscard]] std::vector<double> move(const std::vector<RigidMotion>& planned);
+  [[nodiscard]] Velocities velocities_after(const std::vector<double>& gone_s,
+                                            const std::vector<Eigen::Matrix3d>& inertias_m2,
+                                            Velocities velocities, const Velocities& after) const;
+  void use_time(const std::vector<double>& gone_s);
+  void settle(const Velocities& rises, const std::vector<double>& gone_s) const;
 };
 
+/// Resets what the bodies keep of the last substep. Returns the velocities with which the members enter this
+/// one.
+Velocities Substep::begin() {
+  results_.assign(bodies_.size(), {});
+  Velocities velocities;
+  for (MovingBody& moving : bodies_) {
+    Velocity& velocity = velocities.emplace_back(
+        Velocity{moving.body->velocity_world_mps, moving.body->angular_velocity_world_rad_s});
+    limit(velocity, config_);
+    moving.left_s = moving.body->asleep ? 0.0 : moving.dt_s;
+    moving.crosses = false;
+    moving.stops_in_place = 0;
+    moving.limited_by = {};
+    moving.T_world_near.reset();
+  }
+  return velocities;
+}
+
+/// Returns the members' velocities, followed by those of the bystanders.
+Velocities Substep::with_bystanders(Velocities of_members) const {
+  of_members.resize(bodies_.size());
+  for (const Bystander& bystander : system_.bystanders)
+    of_members.push_back({bystander.body->velocity_world_mps, bystander.body->angular_velocity_world_rad_s});
+  return of_members;
+}
+
 /// Cancels the velocity into contacts that would close within the time left, with restitution for fast
-/// impacts. Returns true if it woke a sleeping body, whose contacts are not in the system.
-bool Substep::bounce() {
+/// impacts. Returns the velocities after the impacts; none if no contact would close.
+std::optional<Velocities> Substep::bounce(const Velocities& velocities) {
   allow_closing_gaps(bodies_, config_.contact_margin_m, system_);
   bool enters = false, is_fast = false, is_pushed = false;
   for (std::size_t i = 0; i < system_.contacts.size(); ++i) {
     SolverContact& contact = system_.contacts[i];
     is_pushed |= system_.push[i] != nullptr;
-    const double closing_mps = -slip_at(contact, system_.bodies).dot(contact.normal);
+    const double closing_mps = -slip_at(contact, velocities).dot(contact.normal);
     if (!(closing_mps > -contact.leaves_mps + 1e-9)) continue;
     enters = true;
     const bool is_carried = bodies_[contact.body].is_carried && contact.other == kNoOther;
@@ -294,106 +342,121 @@ bool Substep::bounce() {
     is_fast = true;
     contact.leaves_mps = contact.restitution * closing_mps;
   }
-  if (!enters) return false;
-  set_masses(bodies_, Movable::kAllButSleeping, system_);
+  if (!enters) return std::nullopt;
+  set_masses_for_impacts(bodies_, velocities, system_);
   clear_impulses(system_);
   constexpr double kSame = 1.0 + 1e-9;
-  const double before_J = energy(system_.bodies);
-  const std::vector<SolverBody> entering = system_.bodies;
-  solve(0.0);
-  if (is_fast && !is_pushed && energy(system_.bodies) > kSame * before_J) {
+  Velocities after = solved(velocities, 0.0);
+  if (is_fast && !is_pushed && energy(system_.bodies, after) > kSame * energy(system_.bodies, velocities)) {
     // Newton's restitution with friction at several contacts may add energy: repeat without restitution.
-    system_.bodies = entering;
     for (SolverContact& contact : system_.contacts) contact.leaves_mps = std::min(contact.leaves_mps, 0.0);
     clear_impulses(system_);
-    solve(0.0);
+    after = solved(velocities, 0.0);
   }
-  return note_impacts();
+  return after;
 }
 
-/// Takes over the velocities after impacts. Returns true if it wakes sleeping bodies that were hit.
-bool Substep::note_impacts() {
+/// Sets the velocities of the bodies that are not advanced in this substep.
+void Substep::give_bystanders(const Velocities& velocities) const {
+  for (std::size_t i = 0; i < system_.bystanders.size(); ++i) {
+    Body& body = *system_.bystanders[i].body;
+    const Velocity& velocity = velocities[bodies_.size() + i];
+    body.velocity_world_mps = velocity.linear_mps;
+    body.angular_velocity_world_rad_s = velocity.angular_rad_s;
+  }
+}
+
+/// Wakes the sleeping bodies that bounce() moved. Returns true if there are any: their contacts are not in
+/// the system.
+bool Substep::wake_hit_sleepers() {
   bool woke = false;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     MovingBody& moving = bodies_[i];
-    const bool was_moved = system_.bodies[i].inverse_mass_per_kg > 0.0;
-    if (was_moved) moving.velocity = system_.bodies[i].velocity;
-    if (!was_moved || !moving.body->asleep) continue;
+    if (!is_movable(i) || !moving.body->asleep) continue;
     wake(moving);
     woke = true;
     moving.left_s = moving.dt_s;
   }
-  for (std::size_t i = 0; i < system_.bystanders.size(); ++i) {
-    Body& body = *system_.bystanders[i].body;
-    const SolverBody& solved = system_.bodies[bodies_.size() + i];
-    body.velocity_world_mps = solved.velocity.linear_mps;
-    body.angular_velocity_world_rad_s = solved.velocity.angular_rad_s;
-  }
-  count_impacts(bodies_, system_);
   return woke;
 }
 
-/// Sets the velocities after the time left, with gravity, support and friction. The weight of a body acts on
-/// all bodies below it, sleeping ones included.
+/// Returns the velocities after the time left, with gravity, support and friction. The weight of a body acts
+/// on all bodies below it, sleeping ones included.
 /// @param keeps_impulses  keeps them as guesses for the next substep
-void Substep::hold_up(bool keeps_impulses) {
-  for (std::size_t i = 0; i < bodies_.size(); ++i) system_.bodies[i].velocity = bodies_[i].velocity;
+Velocities Substep::hold_up(Velocities velocities, bool keeps_impulses) {
   set_masses(bodies_, Movable::kActiveAndKnownSleepers, system_);
   double scale = 0.0;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const MovingBody& moving = bodies_[i];
-    if (moving.is_carried || !(system_.bodies[i].inverse_mass_per_kg > 0.0)) continue;
+    if (moving.is_carried || !is_movable(i)) continue;
     const double left_s = moving.body->asleep ? moving.dt_s : moving.left_s;
-    system_.bodies[i].velocity.linear_mps += config_.gravity_world_mps2 * left_s;
+    velocities[i].linear_mps += config_.gravity_world_mps2 * left_s;
     scale = std::max(scale, left_s);
   }
   allow_closing_gaps(bodies_, config_.contact_margin_m, system_);
   guess_impulses(bodies_, scale, system_);
-  solve(config_.rolling);
+  Velocities after = solved(std::move(velocities), config_.rolling);
   if (keeps_impulses && scale > 0.0) keep_impulses(bodies_, 1.0 / scale, system_);  // as forces
-  for (std::size_t i = 0; i < bodies_.size(); ++i)
-    if (is_active(bodies_[i])) bodies_[i].after = system_.bodies[i].velocity;
+  return after;
 }
 
 /// Wakes sleeping bodies that the weight on them would set in motion: slowly, if it lasts; fast, at once. A
-/// body that still jiggles on a heap does not keep the heap awake.
-void Substep::wake_unbalanced_sleepers() {
+/// body that still jiggles on a heap does not keep the heap awake. Needs the masses of hold_up().
+/// @param after  result of hold_up()
+void Substep::wake_unbalanced_sleepers(const Velocities& after) {
   constexpr double kFast = 0.05, kSlow = 1.5 * kUnbalanced;  // fractions of gravity's acceleration
   constexpr double kLasts_s = 0.04;
   const double g = config_.gravity_world_mps2.norm();
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     MovingBody& moving = bodies_[i];
     if (!moving.body->asleep) continue;
-    const bool is_solved = system_.bodies[i].inverse_mass_per_kg > 0.0;
-    const double begins_mps2 =
-        is_solved ? speed_of(*moving.body, system_.bodies[i].velocity) / moving.dt_s : 0.0;
+    const double begins_mps2 = is_movable(i) ? speed_of(*moving.body, after[i]) / moving.dt_s : 0.0;
     double& unbalanced_s = moving.body->unbalanced_s;
     unbalanced_s = begins_mps2 < kSlow * g ? 0.0 : unbalanced_s + moving.dt_s;
     if (unbalanced_s >= kLasts_s || begins_mps2 >= kFast * g) wake(moving);  // moves from the next substep on
   }
 }
 
-/// Finds the slow bodies that would stay at rest if all were at rest.
-void Substep::find_balanced() {
+/// Sets is_balanced of the active bodies that would stay at rest if all were at rest. Returns without a solve
+/// if no body is slow. Needs the masses of hold_up().
+/// @param velocities  before hold_up()
+void Substep::find_balanced(const Velocities& velocities) {
   constexpr double kSlow_mps = 0.3;
-  const bool is_any_slow = std::any_of(bodies_.begin(), bodies_.end(), [](const MovingBody& moving) {
-    return is_active(moving) && speed_of(*moving.body, moving.velocity) < kSlow_mps;
-  });
+  bool is_any_slow = false;
+  for (std::size_t i = 0; i < bodies_.size() && !is_any_slow; ++i)
+    is_any_slow = is_active(bodies_[i]) && speed_of(*bodies_[i].body, velocities[i]) < kSlow_mps;
   if (!is_any_slow) return;
-  for (std::size_t i = 0; i < system_.bodies.size(); ++i) {
-    system_.bodies[i].velocity = {};
-    if (is_member(i) && !bodies_[i].is_carried && system_.bodies[i].inverse_mass_per_kg > 0.0)
-      system_.bodies[i].velocity.linear_mps = config_.gravity_world_mps2 * bodies_[i].dt_s;
-  }
+  Velocities falling = at_rest();
+  for (std::size_t i = 0; i < bodies_.size(); ++i)
+    if (!bodies_[i].is_carried && is_movable(i))
+      falling[i].linear_mps = config_.gravity_world_mps2 * bodies_[i].dt_s;
   for (std::size_t i = 0; i < system_.contacts.size(); ++i)
     system_.contacts[i].leaves_mps = system_.push[i] != nullptr ? system_.push[i]->speed_mps : 0.0;
   guess_impulses(bodies_, bodies_.front().dt_s, system_);
-  solve(config_.rolling);
+  const Velocities held = solved(std::move(falling), config_.rolling);
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     if (!is_active(bodies_[i])) continue;
-    const double begins_mps2 = speed_of(*bodies_[i].body, system_.bodies[i].velocity) / bodies_[i].dt_s;
+    const double begins_mps2 = speed_of(*bodies_[i].body, held[i]) / bodies_[i].dt_s;
     results_[i].is_balanced = begins_mps2 < kUnbalanced * config_.gravity_world_mps2.norm();
   }
+}
+
+/// Returns the means of the velocities before and after, without motion into bodies that do not move now.
+/// Bodies that do not move have zero.
+Velocities Substep::mean_velocities(const Velocities& before, const Velocities& after) {
+  Velocities means = at_rest();
+  for (std::size_t i = 0; i < bodies_.size(); ++i)
+    if (is_active(bodies_[i]))
+      means[i] = {0.5 * (before[i].linear_mps + after[i].linear_mps),
+                  0.5 * (before[i].angular_rad_s + after[i].angular_rad_s)};
+  const bool meets_others = std::any_of(system_.contacts.begin(), system_.contacts.end(),
+                                        [](const auto& contact) { return contact.other != kNoOther; });
+  if (!meets_others) return means;
+  set_masses(bodies_, Movable::kActive, system_);
+  allow_closing_gaps(bodies_, config_.contact_margin_m, system_);
+  for (SolverContact& contact : system_.contacts) contact.friction = 0.0;
+  clear_impulses(system_);
+  return solved(std::move(means), 0.0);
 }
 
 /// Gives the contacts the normals of their features and no friction, for changes of position without
@@ -407,10 +470,37 @@ void Substep::follow_features() {
   }
 }
 
+/// Returns what must be added to motions along a plane, without momentum, so that they do not enter the bumps
+/// of the surface itself. Empty: nothing.
+Velocities Substep::rises(const Velocities& means) {
+  constexpr double kLeast_mps = 1e-6;
+  const bool is_any_bumpy = std::any_of(system_.features.begin(), system_.features.end(),
+                                        [](const Feature& feature) { return feature.is_on_patch; });
+  if (!is_any_bumpy) return {};
+  allow_closing_gaps(bodies_, config_.contact_margin_m, system_);
+  bool is_needed = false;
+  for (std::size_t i = 0; i < system_.contacts.size(); ++i) {
+    SolverContact& contact = system_.contacts[i];
+    const Vec3 slip_mps = slip_at(contact, means);
+    if (!system_.features[i].is_on_patch) {
+      contact.leaves_mps -= slip_mps.dot(contact.normal);
+      continue;
+    }
+    // Its rotation rolls a round body over a bump, not into it: that part keeps to the plane.
+    const Vec3& along_mps = means[contact.body].linear_mps;
+    contact.leaves_mps -=
+        along_mps.dot(contact.normal) + (slip_mps - along_mps).dot(system_.features[i].patch_normal);
+    is_needed |= contact.leaves_mps > kLeast_mps;
+  }
+  if (!is_needed) return {};
+  set_masses(bodies_, Movable::kActive, system_);
+  clear_impulses(system_);
+  return solved(at_rest(), 0.0);
+}
+
 /// Returns position corrections, without momentum, that restore the margin at contacts nearer than it.
-std::vector<Velocity> Substep::corrections() {
+Velocities Substep::corrections() {
   constexpr double kAtOnce = 0.3, kFastest_mps = 0.1, kLeft = 0.05;
-  std::vector<Velocity> corrections(bodies_.size());
   bool is_needed = false;
   for (std::size_t i = 0; i < system_.contacts.size(); ++i) {
     SolverContact& contact = system_.contacts[i];
@@ -420,46 +510,15 @@ std::vector<Velocity> Substep::corrections() {
     contact.leaves_mps =
         missing_m > 0.0 ? std::min(kAtOnce * missing_m / left, kFastest_mps) : missing_m / left;
   }
-  if (!is_needed) return corrections;
-  for (SolverBody& body : system_.bodies) body.velocity = {};
+  if (!is_needed) return at_rest();
   set_masses(bodies_, Movable::kActive, system_);
   clear_impulses(system_);
-  solve(0.0);
-  for (std::size_t i = 0; i < bodies_.size(); ++i) corrections[i] = system_.bodies[i].velocity;
-  return corrections;
+  return solved(at_rest(), 0.0);
 }
 
-/// Returns the means of the velocities before and after, without motion into bodies that do not move now.
-std::vector<Velocity> Substep::mean_velocities() {
-  for (std::size_t i = 0; i < system_.bodies.size(); ++i) {
-    if (!is_member(i) || !is_active(bodies_[i])) {
-      system_.bodies[i].velocity = {};
-      continue;
-    }
-    const MovingBody& moving = bodies_[i];
-    system_.bodies[i].velocity = {0.5 * (moving.velocity.linear_mps + moving.after.linear_mps),
-                                  0.5 * (moving.velocity.angular_rad_s + moving.after.angular_rad_s)};
-  }
-  std::vector<Velocity> means(bodies_.size());
-  const bool meets_others = std::any_of(system_.contacts.begin(), system_.contacts.end(),
-                                        [](const auto& contact) { return contact.other != kNoOther; });
-  if (meets_others) {
-    set_masses(bodies_, Movable::kActive, system_);
-    allow_closing_gaps(bodies_, config_.contact_margin_m, system_);
-    for (SolverContact& contact : system_.contacts) contact.friction = 0.0;
-    clear_impulses(system_);
-    solve(0.0);
-  }
-  for (std::size_t i = 0; i < bodies_.size(); ++i) means[i] = system_.bodies[i].velocity;
-  return means;
-}
-
-/// Returns the motions of the active bodies with their mean velocities; zero for others.
-std::vector<RigidMotion> Substep::motions() {
-  const std::vector<Velocity> means = mean_velocities();
-  follow_features();
-  find_rises(means);
-  const std::vector<Velocity> lifts = corrections();
+/// Returns the motions of the active bodies; zero for others.
+std::vector<RigidMotion> Substep::motions(const Velocities& means, const Velocities& rises,
+                                          const Velocities& lifts) const {
   std::vector<RigidMotion> motions(bodies_.size());
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const MovingBody& moving = bodies_[i];
@@ -476,46 +535,25 @@ std::vector<RigidMotion> Substep::motions() {
     motion.angular_rad_s = mean_free_spin(body, slower * means[i].angular_rad_s, moving.left_s);
     motion.linear_m_s += lifts[i].linear_mps;
     motion.angular_rad_s += lifts[i].angular_rad_s;
-    if (!rises_.empty()) {
-      motion.linear_m_s += rises_[i].linear_mps;
-      motion.angular_rad_s += rises_[i].angular_rad_s;
+    if (!rises.empty()) {
+      motion.linear_m_s += rises[i].linear_mps;
+      motion.angular_rad_s += rises[i].angular_rad_s;
     }
     motions[i] = motion;
   }
   return motions;
 }
 
-/// Sets rises_: what must be added to motions along a plane, without momentum, so that they do not enter the
-/// bumps of the surface itself.
-void Substep::find_rises(const std::vector<Velocity>& means) {
-  constexpr double kLeast_mps = 1e-6;
-  rises_.clear();
-  const bool is_any_bumpy = std::any_of(system_.features.begin(), system_.features.end(),
-                                        [](const Feature& feature) { return feature.is_on_patch; });
-  if (!is_any_bumpy) return;
-  for (std::size_t i = 0; i < system_.bodies.size(); ++i)
-    system_.bodies[i].velocity = is_member(i) ? means[i] : Velocity{};
-  allow_closing_gaps(bodies_, config_.contact_margin_m, system_);
-  bool is_needed = false;
-  for (std::size_t i = 0; i < system_.contacts.size(); ++i) {
-    SolverContact& contact = system_.contacts[i];
-    const Vec3 slip_mps = slip_at(contact, system_.bodies);
-    if (!system_.features[i].is_on_patch) {
-      contact.leaves_mps -= slip_mps.dot(contact.normal);
-      continue;
-    }
-    // Its rotation rolls a round body over a bump, not into it: that part keeps to the plane.
-    const Vec3& along_mps = means[contact.body].linear_mps;
-    contact.leaves_mps -=
-        along_mps.dot(contact.normal) + (slip_mps - along_mps).dot(system_.features[i].patch_normal);
-    is_needed |= contact.leaves_mps > kLeast_mps;
-  }
-  if (!is_needed) return;
-  for (SolverBody& body : system_.bodies) body.velocity = {};
-  set_masses(bodies_, Movable::kActive, system_);
-  clear_impulses(system_);
-  solve(0.0);
-  for (std::size_t i = 0; i < bodies_.size(); ++i) rises_.push_back(system_.bodies[i].velocity);
+std::vector<Eigen::Matrix3d> Substep::inertias_m2() const {
+  std::vector<Eigen::Matrix3d> inertias_m2;
+  for (const MovingBody& moving : bodies_) inertias_m2.push_back(inertia_world_m2(*moving.body));
+  return inertias_m2;
+}
+
+/// Moves the active bodies. Returns the durations of their motions, s.
+std::vector<double> Substep::move(const std::vector<RigidMotion>& planned) {
+  const auto active = static_cast<std::size_t>(std::count_if(bodies_.begin(), bodies_.end(), is_active));
+  return move_active(bodies_, planned, config_.contact_margin_m, worker_for(active, system_));
 }
 
 /// Returns the angular velocity after a motion: with the angular momentum before it. The path of a body in
@@ -532,10 +570,52 @@ Vec3 spin_after(const Body& body, const Eigen::Matrix3d& inertia_m2, const Vec3&
   return after_rad_s;
 }
 
+/// Returns the velocities after motions that took the fraction gone_s of the time left.
+/// @param inertias_m2  before the motions
+/// @param velocities   before hold_up()
+/// @param after        result of hold_up(), at the end of the time left
+Velocities Substep::velocities_after(const std::vector<double>& gone_s,
+                                     const std::vector<Eigen::Matrix3d>& inertias_m2, Velocities velocities,
+                                     const Velocities& after) const {
+  std::vector<bool> is_touched(system_.bodies.size());
+  for (const SolverContact& contact : system_.contacts) {
+    is_touched[contact.body] = true;
+    if (contact.other < is_touched.size()) is_touched[contact.other] = true;
+  }
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const MovingBody& moving = bodies_[i];
+    if (!is_active(moving)) continue;
+    const Eigen::Matrix3d inertia_m2 = inertias_m2[i];  // a copy: the same alignment in every run
+    const double part = gone_s[i] / moving.left_s;
+    Velocity& velocity = velocities[i];
+    velocity.linear_mps += part * (after[i].linear_mps - velocity.linear_mps);
+    velocity.angular_rad_s += part * (after[i].angular_rad_s - velocity.angular_rad_s);
+    velocity.angular_rad_s = spin_after(*moving.body, inertia_m2, velocity.angular_rad_s, is_touched[i]);
+    limit(velocity, config_);
+  }
+  return velocities;
+}
+
+/// Subtracts the durations of the motions from the time left. A body that gets no further, jammed between
+/// others, stays for the rest of the substep.
+void Substep::use_time(const std::vector<double>& gone_s) {
+  constexpr double kProgress = 1e-3;  // fraction of the substep
+  constexpr int kMaxStopsInPlace = 4;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    MovingBody& moving = bodies_[i];
+    if (!is_active(moving)) continue;
+    moving.left_s -= gone_s[i];
+    if (gone_s[i] > kProgress * moving.dt_s) continue;
+    if (++moving.stops_in_place == kMaxStopsInPlace) moving.left_s = 0.0;
+  }
+}
+
 /// Takes the bodies that were lifted over bumps back down, as far as the bumps leave the margin.
-void Substep::settle(const std::vector<double>& gone_s) {
-  for (std::size_t i = 0; i < rises_.size(); ++i) {
-    const Velocity& rise = rises_[i];
+/// @param rises  those of the motions, of which gone_s were carried out; may be empty
+void Substep::settle(const Velocities& rises, const std::vector<double>& gone_s) const {
+  if (rises.empty()) return;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const Velocity& rise = rises[i];
     if (!(gone_s[i] > 0.0) || (rise.linear_mps.isZero(0.0) && rise.angular_rad_s.isZero(0.0))) continue;
     const MovingBody& moving = bodies_[i];
     Eigen::Isometry3d& T_world_object = moving.body->T_world_object;
@@ -553,63 +633,39 @@ void Substep::settle(const std::vector<double>& gone_s) {
   }
 }
 
-/// Moves the active bodies, and changes their velocities by the fraction of the time that they moved.
-void Substep::move() {
-  constexpr double kProgress = 1e-3;  // fraction of the substep
-  constexpr int kMaxStopsInPlace = 4;
-  const std::vector<RigidMotion> planned = motions();
-  std::vector<bool> is_touched(system_.bodies.size());
-  for (const SolverContact& contact : system_.contacts) {
-    is_touched[contact.body] = true;
-    if (contact.other < is_touched.size()) is_touched[contact.other] = true;
-  }
-  std::vector<Eigen::Matrix3d> inertias_m2;
-  for (const MovingBody& moving : bodies_) inertias_m2.push_back(inertia_world_m2(*moving.body));
-  const auto active = static_cast<std::size_t>(std::count_if(bodies_.begin(), bodies_.end(), is_active));
-  const std::vector<double> gone_s =
-      move_active(bodies_, planned, config_.contact_margin_m, worker_for(active, system_));
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    MovingBody& moving = bodies_[i];
-    if (!is_active(moving)) continue;
-    const Eigen::Matrix3d inertia_m2 = inertias_m2[i];  // a copy: the same alignment in every run
-    const double part = gone_s[i] / moving.left_s;
-    Velocity& velocity = moving.velocity;
-    velocity.linear_mps += part * (moving.after.linear_mps - velocity.linear_mps);
-    velocity.angular_rad_s += part * (moving.after.angular_rad_s - velocity.angular_rad_s);
-    velocity.angular_rad_s = spin_after(*moving.body, inertia_m2, velocity.angular_rad_s, is_touched[i]);
-    limit(velocity, config_);
-    moving.left_s -= gone_s[i];
-    // A body that gets no further, jammed between others, stays for the rest of the substep.
-    if (gone_s[i] > kProgress * moving.dt_s) continue;
-    if (++moving.stops_in_place == kMaxStopsInPlace) moving.left_s = 0.0;
-  }
-  settle(gone_s);
-}
-
 void Substep::run() {
-  results_.assign(bodies_.size(), {});
-  for (MovingBody& moving : bodies_) {
-    moving.velocity = {moving.body->velocity_world_mps, moving.body->angular_velocity_world_rad_s};
-    limit(moving.velocity, config_);
-    moving.left_s = moving.body->asleep ? 0.0 : moving.dt_s;
-    moving.crosses = false;
-    moving.stops_in_place = 0;
-    moving.limited_by = {};
-    moving.T_world_near.reset();
-  }
+  Velocities velocities = begin();
   const auto is_any_active = [&] { return std::any_of(bodies_.begin(), bodies_.end(), is_active); };
   for (int stop = 0; stop < config_.max_contact_events && is_any_active(); ++stop) {
     find_contacts(bodies_, config_, up_, system_);
-    if (bounce()) continue;
-    hold_up(stop == 0);
-    if (stop == 0) wake_unbalanced_sleepers();
+    velocities = with_bystanders(std::move(velocities));
+
+    if (std::optional<Velocities> bounced = bounce(velocities)) {
+      velocities = *std::move(bounced);
+      give_bystanders(velocities);
+      const bool woke = wake_hit_sleepers();
+      count_impacts(bodies_, system_);
+      if (woke) continue;
+    }
+
+    const Velocities after = hold_up(velocities, stop == 0);
+    if (stop == 0) wake_unbalanced_sleepers(after);
     note_support(bodies_, config_, up_, system_, results_);
-    if (stop == 0) find_balanced();
-    move();
+    if (stop == 0) find_balanced(velocities);
+
+    const Velocities means = mean_velocities(velocities, after);
+    follow_features();
+    const Velocities rising = rises(means);
+    const Velocities lifts = corrections();
+    const std::vector<Eigen::Matrix3d> inertias_before_m2 = inertias_m2();
+    const std::vector<double> gone_s = move(motions(means, rising, lifts));
+    velocities = velocities_after(gone_s, inertias_before_m2, std::move(velocities), after);
+    use_time(gone_s);
+    settle(rising, gone_s);
   }
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    bodies_[i].body->velocity_world_mps = bodies_[i].velocity.linear_mps;
-    bodies_[i].body->angular_velocity_world_rad_s = bodies_[i].velocity.angular_rad_s;
+    bodies_[i].body->velocity_world_mps = velocities[i].linear_mps;
+    bodies_[i].body->angular_velocity_world_rad_s = velocities[i].angular_rad_s;
     results_[i].is_balanced = results_[i].is_balanced && results_[i].is_held_up;
   }
 }
