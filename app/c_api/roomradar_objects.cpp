@@ -55,7 +55,7 @@ roomradar_object_state state_of(const VirtualObject& object) {
   state.is_in_room = object.in_room ? 1 : 0;
   state.is_asleep = body.asleep ? 1 : 0;
   state.is_carried = object.carried_to_world ? 1 : 0;
-  state.is_stuck = object.stuck ? 1 : 0;
+  state.is_stuck = object.placement.stuck ? 1 : 0;
   state.rests_on = static_cast<int32_t>(body.rests_on);
   state.departures = object.departures;
   state.mass_kg = body.mass.mass_kg;

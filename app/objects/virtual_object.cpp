@@ -24,7 +24,7 @@ std::shared_ptr<const ObjectModel> model_among(std::span<const std::unique_ptr<V
 std::string_view state_word(const VirtualObject& object) {
   if (!object.in_room) return "outside";
   if (object.carried_to_world) return "carried";
-  if (object.stuck) return "stuck";
+  if (object.placement.stuck) return "stuck";
   return object.body.asleep ? "at rest" : "moving";
 }
 

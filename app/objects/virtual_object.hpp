@@ -24,34 +24,40 @@ struct ObjectContact {
   const Body* other = nullptr;  ///< the other object's body; null: a surface
 };
 
+/// What is known about an object since it was last placed. Placing the object replaces all of it. Removing
+/// the object keeps it for the summary.
+struct Placement {
+  Eigen::Matrix3d R_world = Eigen::Matrix3d::Identity();  ///< orientation when placed, or released by a user
+  /// When placed, the object was in unknown space that is solid; see is_in_solid_unknown().
+  bool began_in_unknown = false;
+  /// The object has been in solid unknown space ever since.
+  bool in_unknown = false;
+  /// Pose from which its motion is measured for still_s.
+  Eigen::Isometry3d T_world_still = Eigen::Isometry3d::Identity();
+  double still_s = 0.0;  ///< time for which the object has been awake and within 2 mm of T_world_still
+  /// True if a surface intersects the object, no free pose is within 10 cm, and the object has been awake and
+  /// still for 1 s. Reset when the object moves.
+  bool stuck = false;
+  double waited_s = 0.0;  ///< time since physics last advanced the object
+  /// Pose to which physics last moved the object, if no surface of the room and no other object overlaps it
+  /// there.
+  std::optional<Eigen::Isometry3d> T_world_undisturbed{};
+};
+
 struct VirtualObject {
   Body body;  ///< includes name and pose
   bool in_room = false;
-  /// When the object was last placed, it was in unknown space that is solid; see is_in_solid_unknown().
-  bool began_in_unknown = false;
-  /// The object has been in solid unknown space ever since it was placed.
-  bool in_unknown = false;
-  Eigen::Matrix3d R_world_put = Eigen::Matrix3d::Identity();  ///< orientation when last placed
+  std::string_view why_not_in_room = "nothing placed or dropped it";  ///< valid while in_room is false
+  Placement placement;                                                ///< default until first placed
   /// Target position of the origin while a user carries the object, without gravity. Unset: not carried.
   std::optional<Eigen::Vector3d> carried_to_world;
   /// Pose in which the object last slept. Unset: the object has not slept since it was added or since
   /// end_departure() returned it.
   std::optional<Eigen::Isometry3d> T_world_rested;
   int departures = 0;  ///< number of times that it fell out of the map
-  /// True if a surface intersects the object, no free pose is within 10 cm, and the object has been awake and
-  /// still for 1 s. Reset when the object moves.
-  bool stuck = false;
-  double still_s = 0.0;  ///< time for which the object has been awake and within 2 mm of T_world_still
-  /// Pose from which its motion is measured for still_s.
-  Eigen::Isometry3d T_world_still = Eigen::Isometry3d::Identity();
   /// Contacts with a gap of at most 1.5 contact margins, found before the object's last motion. They are kept
   /// while the object sleeps.
   std::vector<ObjectContact> contacts;
-  double waited_s = 0.0;  ///< time since physics last advanced it
-  /// Pose to which physics last moved the object, if no surface of the room and no other object overlaps it
-  /// there.
-  std::optional<Eigen::Isometry3d> T_world_undisturbed;
-  std::string_view why_not_in_room = "nothing placed or dropped it";  ///< valid while in_room is false
   /// Number of cells of the last frame's dynamic mesh that have full resolution because this object is near.
   std::size_t fine_cells = 0;
   std::shared_ptr<const ObjectModel> model;  ///< not null

@@ -74,8 +74,9 @@ nlohmann::json objects_of(const Session& session) {
   nlohmann::json objects = nlohmann::json::array();
   for (const auto& object : session.objects()) {
     const Eigen::Matrix3d R_world_object = object->body.T_world_object.linear();
-    const double turned_deg = Eigen::AngleAxisd(object->R_world_put.transpose() * R_world_object).angle() *
-                              (180.0 / std::numbers::pi);
+    const double turned_deg =
+        Eigen::AngleAxisd(object->placement.R_world.transpose() * R_world_object).angle() *
+        (180.0 / std::numbers::pi);
     const Coefficients surface = on_room(object->body.material, session.config().physics);
     objects.push_back({{"name", object->body.name},
                        {"mass_kg", object->body.mass.mass_kg},
@@ -83,10 +84,10 @@ nlohmann::json objects_of(const Session& session) {
                        {"restitution", surface.restitution},
                        {"in_room", object->in_room},
                        {"at_rest", object->body.asleep},
-                       {"stuck", object->stuck},
+                       {"stuck", object->placement.stuck},
                        {"rests_on", to_string(object->body.rests_on)},
                        {"scan_from_m", scan_from(*object, session)},
-                       {"began_in_unknown", object->began_in_unknown},
+                       {"began_in_unknown", object->placement.began_in_unknown},
                        {"left_the_map", object->departures},
                        {"position_m", to_json(object->body.T_world_object.translation())},
                        {"middle_m", to_json(middle_world(*object))},

@@ -17,9 +17,9 @@ namespace {
 
 /// Returns a note on an object placed in unknown space, where it can move freely until it leaves.
 const char* note_on(const VirtualObject& object) {
-  if (!object.began_in_unknown) return "";
-  return object.in_unknown ? "; was placed in unknown space and is still partly inside"
-                           : "; was placed in unknown space and has left it";
+  if (!object.placement.began_in_unknown) return "";
+  return object.placement.in_unknown ? "; was placed in unknown space and is still partly inside"
+                                     : "; was placed in unknown space and has left it";
 }
 
 /// Prints the frame rate, the time per frame, and the stage that takes most of it.
@@ -102,7 +102,7 @@ void print_object(const VirtualObject& object, const Session& session) {
   }
   const Eigen::Vector3d p = middle_world(object);  // its origin may be far outside
   std::string state = "moving";
-  if (object.stuck)
+  if (object.placement.stuck)
     state = "stuck in a surface";
   else if (body.asleep)
     state = "at rest" + std::string(support_words(body.rests_on));

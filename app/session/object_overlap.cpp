@@ -102,15 +102,15 @@ std::string leave_surfaces(VirtualObject& object, const WayOut& way, bool is_thr
 bool is_still_too_long(VirtualObject& object, double waited_s) {
   constexpr double kStill_m = 0.002, kStuckAfter_s = 1.0;
   if (object.body.asleep || object.carried_to_world ||
-      strayed_m(object.body, object.T_world_still) > kStill_m) {
-    object.T_world_still = object.body.T_world_object;
-    object.still_s = 0.0;
-    object.stuck = false;
+      strayed_m(object.body, object.placement.T_world_still) > kStill_m) {
+    object.placement.T_world_still = object.body.T_world_object;
+    object.placement.still_s = 0.0;
+    object.placement.stuck = false;
     return false;
   }
-  object.still_s += waited_s;
-  if (object.still_s < kStuckAfter_s) return false;
-  object.still_s = 0.0;
+  object.placement.still_s += waited_s;
+  if (object.placement.still_s < kStuckAfter_s) return false;
+  object.placement.still_s = 0.0;
   return true;
 }
 
@@ -122,7 +122,7 @@ std::string free_or_stuck(VirtualObject& object, const WayOut& way) {
     object.body.T_world_object = free->T_world_object;
     return " was stuck in a surface; moved out by " + millimetres(free->moved_m);
   }
-  if (std::exchange(object.stuck, true)) return {};
+  if (std::exchange(object.placement.stuck, true)) return {};
   return " is stuck in a surface at " + coordinates(object.body.T_world_object.translation()) +
          "; place it somewhere else";
 }

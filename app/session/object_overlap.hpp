@@ -42,12 +42,12 @@ struct WayOut {
 /// @return notice text without the object's name. Empty if the object was moved by less than 5 mm
 std::string leave_surfaces(VirtualObject& object, const WayOut& way, bool is_thrown);
 
-/// Adds waited_s to VirtualObject::still_s, the time for which the object has been awake, not carried, and
+/// Adds waited_s to Placement::still_s, the time for which the object has been awake, not carried, and
 /// has moved by at most 2 mm. Returns true when still_s reaches 1 s, and resets still_s to 0.
 bool is_still_too_long(VirtualObject& object, double waited_s);
 
 /// Moves the object to the nearest free pose within 10 cm if a surface or another object intersects it.
-/// Dynamic surfaces do not count. Sets VirtualObject::stuck if there is no such pose.
+/// Dynamic surfaces do not count. Sets Placement::stuck if there is no such pose.
 /// @return notice text without the object's name; empty if no surface intersects the object, or if it was
 ///         stuck already
 std::string free_or_stuck(VirtualObject& object, const WayOut& way);

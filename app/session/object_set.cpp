@@ -206,8 +206,8 @@ std::vector<SceneBody> bodies_in(const std::vector<SceneTree>& scene,
 }
 
 bool is_undisturbed(const VirtualObject& object, std::span<const SceneTree> scene) {
-  if (!object.T_world_undisturbed) return false;
-  if (object.T_world_undisturbed->matrix() != object.body.T_world_object.matrix()) return false;
+  if (!object.placement.T_world_undisturbed) return false;
+  if (object.placement.T_world_undisturbed->matrix() != object.body.T_world_object.matrix()) return false;
   const TreeInstance own{&object.model->shape.touched, object.body.T_world_object};
   return std::none_of(scene.begin(), scene.end(), [&](const SceneTree& surface) {
     return is_moving_surface(surface.kind) && is_usable(surface.instance) &&
@@ -520,17 +520,15 @@ void ObjectSet::put(VirtualObject& object, const ObjectState& state) {
     object.why_not_in_room = "its start position was refused";
     throw;
   }
-  object.R_world_put = object.body.T_world_object.linear();
   object.body.velocity_world_mps = state.velocity_world_mps;
   object.body.angular_velocity_world_rad_s = state.angular_velocity_world_rad_s;
   object.body.asleep = false;
   object.in_room = true;
-  object.waited_s = 0.0;
-  object.T_world_undisturbed.reset();
-  object.stuck = false;
-  object.still_s = 0.0;
-  object.T_world_still = object.body.T_world_object;
-  object.in_unknown = object.began_in_unknown = is_in_solid_unknown(room_, object);
+  const bool is_in_unknown = is_in_solid_unknown(room_, object);
+  object.placement = {.R_world = object.body.T_world_object.linear(),
+                      .began_in_unknown = is_in_unknown,
+                      .in_unknown = is_in_unknown,
+                      .T_world_still = object.body.T_world_object};
 }
 
 WayOut ObjectSet::way_out_of(const VirtualObject& object) {
@@ -561,7 +559,7 @@ void ObjectSet::carry(const std::string& name, const Eigen::Vector3d& position_w
 void ObjectSet::release(const std::string& name, const Eigen::Vector3d& velocity_world_mps) {
   VirtualObject& object = take_over(name);
   object.body.velocity_world_mps = velocity_world_mps;
-  object.R_world_put = object.body.T_world_object.linear();
+  object.placement.R_world = object.body.T_world_object.linear();
 }
 
 void ObjectSet::turn(const std::string& name, const Eigen::Vector3d& turn_world_deg) {
@@ -621,11 +619,12 @@ ContactCounts ObjectSet::move(double dt_s, std::int64_t frame_number, StageTimes
   for (std::size_t index = 0; index < objects_.size(); ++index) {
     VirtualObject* const object = objects_[index].get();
     if (!object->in_room || (!object->carried_to_world && !is_loaded_round(room_, *object))) continue;
-    object->waited_s += std::min(dt_s, config_.physics.max_advance_s);  // longer gaps are stalls
+    object->placement.waited_s += std::min(dt_s, config_.physics.max_advance_s);  // longer gaps are stalls
     if (!object->carried_to_world && !is_turn_to_move(index, frame_number, config_)) continue;
-    if (object->stuck && object->waited_s < kStuckLooksAfter_s) continue;
-    if (!object->body.asleep) object->in_unknown = object->in_unknown && is_in_solid_unknown(room_, *object);
-    due.push_back({.object = object, .waited_s = std::exchange(object->waited_s, 0.0)});
+    if (object->placement.stuck && object->placement.waited_s < kStuckLooksAfter_s) continue;
+    if (!object->body.asleep)
+      object->placement.in_unknown = object->placement.in_unknown && is_in_solid_unknown(room_, *object);
+    due.push_back({.object = object, .waited_s = std::exchange(object->placement.waited_s, 0.0)});
   }
   // Without the map, all surfaces are the frame's, and none is known to be dynamic.
   const bool has_map = config_.scene.surfaces == SurfacePolicy::kMap;
@@ -642,8 +641,9 @@ ContactCounts ObjectSet::move(double dt_s, std::int64_t frame_number, StageTimes
       std::any_of(due.begin(), due.end(), [](const DueObject& one) { return one.was_overlapped; });
   for (const DueObject& one : due) {
     VirtualObject& object = *one.object;
-    object.T_world_undisturbed.reset();
-    if (!is_any_overlapped && !object.in_unknown) object.T_world_undisturbed = object.body.T_world_object;
+    object.placement.T_world_undisturbed.reset();
+    if (!is_any_overlapped && !object.placement.in_unknown)
+      object.placement.T_world_undisturbed = object.body.T_world_object;
     if (!is_still_too_long(object, one.waited_s)) continue;
     const std::string news = free_or_stuck(object, way_out_of(object));
     if (!news.empty()) notices_.push_back({object.body.name, news});
@@ -722,14 +722,15 @@ void ObjectSet::set_radar(const RadarConfig& config) {
 void ObjectSet::room_changed() {
   for (const auto& object : objects_) {
     object->body.asleep = false;
-    object->T_world_undisturbed.reset();
+    object->placement.T_world_undisturbed.reset();
   }
 }
 
 void ObjectSet::unknown_changed() {
   for (const auto& object : objects_) {
-    object->in_unknown = object->began_in_unknown = object->in_room && is_in_solid_unknown(room_, *object);
-    object->T_world_undisturbed.reset();
+    object->placement.in_unknown = object->placement.began_in_unknown =
+        object->in_room && is_in_solid_unknown(room_, *object);
+    object->placement.T_world_undisturbed.reset();
   }
 }
 

@@ -188,7 +188,7 @@ nlohmann::json drop_row(const Stage& stage, DropWhere where, const Settings& set
                         {"size_m", size_m},
                         {"moved_m", moved_m},
                         {"left", has_left},
-                        {"began_in_unknown", object.began_in_unknown},
+                        {"began_in_unknown", object.placement.began_in_unknown},
                         {"asleep", object.body.asleep},
                         {"from", {from_world->x(), from_world->y(), from_world->z()}},
                         {"to", {middle.x(), middle.y(), middle.z()}},

@@ -235,7 +235,7 @@ JudgedPicture shown_by(const Session& session) {
 
 bool moved_some(const Session& session) {
   return std::any_of(session.objects().begin(), session.objects().end(),
-                     [](const auto& object) { return object->in_room && object->waited_s == 0.0; });
+                     [](const auto& object) { return object->in_room && object->placement.waited_s == 0.0; });
 }
 
 double newest_ms(const StageTimes& times, std::string_view wanted) {
@@ -254,7 +254,7 @@ class ShownAge {
       made_s_ = stamp_s;
       waited_s_.clear();
       for (const auto& object : session.objects())
-        if (object->in_room) waited_s_.push_back(object->waited_s);
+        if (object->in_room) waited_s_.push_back(object->placement.waited_s);
     }
     if (!counts) return;
     for (const double waited_s : waited_s_) sum_s_ += waited_s + (stamp_s - made_s_);

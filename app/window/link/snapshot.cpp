@@ -70,7 +70,7 @@ void SnapshotMaker::fill(const Session& session, const FrameResult& result, cons
     shown.objects.push_back({object->body.name, mesh, object->body.T_world_object,
                              object->model->shape.drawn.bounds(), object->body.velocity_world_mps,
                              object->in_room, object->body.asleep, object->carried_to_world.has_value(),
-                             object->stuck, object->body.rests_on, object->body.mass.mass_kg,
+                             object->placement.stuck, object->body.rests_on, object->body.mass.mass_kg,
                              on_room(object->body.material, session.config().physics)});
   }
   shown.surfaces = session.config().scene.surfaces;

@@ -687,7 +687,7 @@ TEST(Session, SolidUnknownSpaceHoldsAnObjectUpAndSaysSo) {
     if (is_solid) session.make_unknown_solid(times);
     const auto [pot, unknown_contacts] = thrown(session, {1.0, 0.0, 0.6}, 0.0);
     const double bottom_m = pot.body.T_world_object.translation().z() + lowest_m(pot);
-    EXPECT_FALSE(pot.began_in_unknown);
+    EXPECT_FALSE(pot.placement.began_in_unknown);
     EXPECT_EQ(unknown_contacts > 0, is_solid);
     if (is_solid) {
       EXPECT_TRUE(pot.body.asleep);
@@ -765,7 +765,7 @@ TEST(Session, WhatIsPlacedInAFloorIsMovedOutOfItAndSaidSo) {
     const std::vector<ObjectNotice> notices = wait(session, 0, 30);
     EXPECT_NEAR(box.body.T_world_object.translation().z(), 0.05, 0.003) << depth_m;
     EXPECT_TRUE(box.body.asleep) << depth_m;
-    EXPECT_FALSE(box.stuck);
+    EXPECT_FALSE(box.placement.stuck);
     ASSERT_EQ(notices.size(), depth_m > 0.01 ? 1U : 0U) << depth_m;
     if (!notices.empty()) {
       EXPECT_EQ(notices[0].name, "box");
@@ -1027,8 +1027,8 @@ TEST(Session, WhatIsPutIntoUnknownSpaceCanLeaveItAndCannotComeBack) {
   StageTimes times;
   session.make_unknown_solid(times);
   const VirtualObject& pot = thrown(session, {1.0, 0.0, -0.5}, 4.2).pot;
-  EXPECT_TRUE(pot.began_in_unknown);
-  EXPECT_FALSE(pot.in_unknown);
+  EXPECT_TRUE(pot.placement.began_in_unknown);
+  EXPECT_FALSE(pot.placement.in_unknown);
   EXPECT_EQ(pot.body.rests_on, SurfaceKind::kUnknownFrontier);
   EXPECT_NEAR(pot.body.T_world_object.translation().z() + lowest_m(pot), 0.0, 0.005);
 }
@@ -1039,7 +1039,7 @@ TEST(Session, WhatIsPutPartlyIntoUnknownSpaceIsMovedOutOrRefused) {
   StageTimes times;
   session.make_unknown_solid(times);
   const VirtualObject& pot = thrown(session, {1.0, 0.0, -0.04}, 0.0).pot;  // 4 of its 15 cm are in the floor
-  EXPECT_FALSE(pot.began_in_unknown);
+  EXPECT_FALSE(pot.placement.began_in_unknown);
   EXPECT_TRUE(pot.body.asleep);
   EXPECT_EQ(pot.body.rests_on, SurfaceKind::kUnknownFrontier);
   EXPECT_NEAR(pot.body.T_world_object.translation().z() + lowest_m(pot), 0.0, 0.005);
