@@ -144,54 +144,81 @@ class BlockOctree {
   const InnerBlock& inner(Slot slot) const { return inner_[slot.number()]; }
   LeafBlock& leaves(Slot slot) { return leaves_[slot.number()]; }
   const LeafBlock& leaves(Slot slot) const { return leaves_[slot.number()]; }
-  /// Returns the block's colours; allocates them if the block has none.
-  ColourBlock& colours(LeafBlock& block) {
-    if (block.colours == 0) block.colours = colours_.take();
-    return colours_[block.colours];
-  }
   [[nodiscard]] Rgb colour(const LeafBlock& block, unsigned i) const {
     return (block.coloured >> i & 1U) != 0 ? colours_[block.colours].colours[i] : Rgb{};
+  }
+
+  /// Call after several threads have changed the octree; see BlockPool::gather_free().
+  void gather_free() { inner_.gather_free(), leaves_.gather_free(), colours_.gather_free(); }
+
+ private:
+  friend class OctreeWriter;
+
+  double resolution_m_;
+  BlockUnits units_;
+  int voxel_band_;
+  BlockPool<InnerBlock> inner_;
+  BlockPool<LeafBlock> leaves_;
+  BlockPool<ColourBlock> colours_;
+};
+
+/// Changes an octree with the blocks of one lane. A copy refers to the same octree and lane. Threads that
+/// change an octree concurrently need writers of different lanes, and must not change the same node.
+class OctreeWriter {
+ public:
+  /// Implicit: one thread alone uses the first lane.
+  OctreeWriter(BlockOctree& tree) : OctreeWriter(tree, 0) {}
+  OctreeWriter(BlockOctree& tree, unsigned lane) : tree_(&tree), lane_(lane) {}
+
+  [[nodiscard]] BlockOctree& tree() const { return *tree_; }
+  operator const BlockOctree&() const { return *tree_; }
+  [[nodiscard]] double resolution_m() const { return tree_->resolution_m(); }
+  [[nodiscard]] const BlockUnits& units() const { return tree_->units(); }
+  [[nodiscard]] InnerBlock& inner(Slot slot) const { return tree_->inner(slot); }
+  [[nodiscard]] LeafBlock& leaves(Slot slot) const { return tree_->leaves(slot); }
+  /// Returns the block's colours; allocates them if the block has none.
+  ColourBlock& colours(LeafBlock& block) const {
+    if (block.colours == 0) block.colours = tree_->colours_.take(lane_);
+    return tree_->colours_[block.colours];
   }
 
   /// Prunes `node`, whose children are `block`, and returns the node's new state. If all eight children are
   /// unknown or equal cubes without a signed distance, the node's block is freed and the node becomes unknown
   /// or a cube. Otherwise, a node that is a block is returned unchanged; `block` must be its own block. For
   /// any other node, allocates a new block with a copy of `block`.
-  Slot prune(Slot node, const InnerBlock& block) {
+  Slot prune(Slot node, const InnerBlock& block) const {
     if (alike(block)) {
-      if (node.is_block()) inner_.give_back(node.number());
+      if (node.is_block()) tree_->inner_.give_back(node.number(), lane_);
       return block.slots[0];
     }
     return kept_open(node, block);
   }
-  Slot prune(Slot node, const LeafBlock& block) {
+  Slot prune(Slot node, const LeafBlock& block) const {
     if (alike(block)) {
       const Slot merged = Slot::cube(block.log_odds[0]);
       free_leaves(node, block);
       return merged;
     }
     if (node.is_block()) return node;
-    const Slot kept = Slot::leaf_block(leaves_.take());
+    const Slot kept = Slot::leaf_block(tree_->leaves_.take(lane_));
     leaves(kept) = block;
     return kept;
   }
 
   /// Frees the colours of `block`, and the leaf block of `node` if it has one.
-  void free_leaves(Slot node, const LeafBlock& block) {
-    if (block.colours != 0) colours_.give_back(block.colours);
-    if (node.is_leaf_block()) leaves_.give_back(node.number());
+  void free_leaves(Slot node, const LeafBlock& block) const {
+    if (block.colours != 0) tree_->colours_.give_back(block.colours, lane_);
+    if (node.is_leaf_block()) tree_->leaves_.give_back(node.number(), lane_);
   }
   /// Frees the inner block of `node`, whose children must not be blocks.
-  void free_inner(Slot node) { inner_.give_back(node.number()); }
+  void free_inner(Slot node) const { tree_->inner_.give_back(node.number(), lane_); }
   /// Returns a node with the children `block`, without pruning.
-  Slot kept_open(Slot node, const InnerBlock& block) {
+  Slot kept_open(Slot node, const InnerBlock& block) const {
     if (node.is_block()) return node;
-    const Slot kept = Slot::inner_block(inner_.take());
+    const Slot kept = Slot::inner_block(tree_->inner_.take(lane_));
     inner(kept) = block;
     return kept;
   }
-  /// Call after several threads have changed the octree; see BlockPool::gather_free().
-  void gather_free() { inner_.gather_free(), leaves_.gather_free(), colours_.gather_free(); }
 
  private:
   // Returns true if all children are unknown, or all are equal cubes. Children that are blocks never compare
@@ -208,12 +235,8 @@ class BlockOctree {
     return (weight[0] | weight[1] | (log_odds[0] ^ first) | (log_odds[1] ^ first)) == 0;
   }
 
-  double resolution_m_;
-  BlockUnits units_;
-  int voxel_band_;
-  BlockPool<InnerBlock> inner_;
-  BlockPool<LeafBlock> leaves_;
-  BlockPool<ColourBlock> colours_;
+  BlockOctree* tree_;
+  unsigned lane_;
 };
 
 /// Returns true if a cube of these log-odds may result from a sensor's measurements. Free cubes have an edge

@@ -70,7 +70,7 @@ std::array<std::int16_t, 8> voxel_distances(const BlockOctree& tree, const LeafB
   return distances;
 }
 
-Slot refined(BlockOctree& tree, Slot node) {
+Slot refined(OctreeWriter tree, Slot node) {
   const LeafBlock coarse = tree.leaves(node);
   InnerBlock children;
   for (unsigned i = 0; i < 8; ++i) {
@@ -80,12 +80,12 @@ Slot refined(BlockOctree& tree, Slot node) {
       voxels.distance = voxel_distances(tree, coarse, {}, i);
     }
     if ((coarse.coloured >> i & 1U) != 0) {
-      const Rgb colour = tree.colour(coarse, i);
+      const Rgb colour = tree.tree().colour(coarse, i);
       tree.colours(voxels).colours.fill(colour);
       voxels.coloured = 0xFFU;
     }
     for (unsigned j = 0; j < 8; ++j)
-      if (voxels.distance[j] > tree.voxel_band()) erase_sample(voxels, j);
+      if (voxels.distance[j] > tree.tree().voxel_band()) erase_sample(voxels, j);
     children.slots[i] = tree.prune(Slot(), voxels);
   }
   tree.free_leaves(node, coarse);
@@ -106,7 +106,7 @@ LeafBlock opened_coarse(const BlockOctree& tree, Slot node) {
   return block;
 }
 
-Slot prune_coarse(BlockOctree& tree, Slot node, const LeafBlock& block) {
+Slot prune_coarse(OctreeWriter tree, Slot node, const LeafBlock& block) {
   if (block.has_samples()) {
     if (node.is_leaf_block()) return node;
     if (node.is_inner_block()) tree.free_inner(node);

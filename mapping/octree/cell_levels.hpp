@@ -32,7 +32,7 @@ std::array<std::int16_t, 8> voxel_distances(const BlockOctree& tree, const LeafB
 /// the truncation band of voxels, which is narrower than that of coarse cells. Otherwise close frames would
 /// have to correct such samples. Samples behind the surface are kept, since on a surface seen obliquely even
 /// adjacent samples are outside the band. Returns the node's new state.
-Slot refined(BlockOctree& tree, Slot node);
+Slot refined(OctreeWriter tree, Slot node);
 
 /// Returns true if a node at kCoarseDepth has no fine samples, so that its cells may be coarse: it is not an
 /// inner block, or has no child that is a block.
@@ -41,12 +41,12 @@ bool may_be_coarse(const BlockOctree& tree, Slot node);
 LeafBlock opened_coarse(const BlockOctree& tree, Slot node);
 /// Stores the changed cells of a node for which may_be_coarse() holds, and returns the node's new state.
 /// Cells without any sample become cubes. If the node has a leaf block, `block` must be that block.
-Slot prune_coarse(BlockOctree& tree, Slot node, const LeafBlock& block);
+Slot prune_coarse(OctreeWriter tree, Slot node, const LeafBlock& block);
 
 /// Calls change(LeafBlock&) on the eight voxels of a node at depth 15. Splits the node first if it is not a
 /// block. Returns the node's new state after pruning.
 template <typename Change>
-Slot change_leaves(BlockOctree& tree, Slot node, const Change& change) {
+Slot change_leaves(OctreeWriter tree, Slot node, const Change& change) {
   LeafBlock made;
   if (!node.is_block()) made = opened_leaves(node);
   LeafBlock& block = node.is_block() ? tree.leaves(node) : made;
@@ -58,7 +58,7 @@ Slot change_leaves(BlockOctree& tree, Slot node, const Change& change) {
 /// `target`. Refines coarse cells above `target`. `place` is the location of `node`; `target` must be in its
 /// subtree. Returns the new state of `node` after pruning.
 template <typename Change>
-Slot change_node(BlockOctree& tree, Slot node, const NodePlace& place, const NodePlace& target,
+Slot change_node(OctreeWriter tree, Slot node, const NodePlace& place, const NodePlace& target,
                  const Change& change) {
   if (place.depth == target.depth) return change(node);
   if (node.is_leaf_block()) node = refined(tree, node);

@@ -44,7 +44,7 @@ struct Observed {
 template <typename Float8>
 class LeafUpdate {
  public:
-  LeafUpdate(BlockOctree& tree, const Frame& frame, const FusionConfig& config, CellSize size)
+  LeafUpdate(OctreeWriter tree, const Frame& frame, const FusionConfig& config, CellSize size)
       : tree_(tree),
         frame_(frame),
         config_(config),
@@ -62,6 +62,9 @@ class LeafUpdate {
     has_colour_ = !colour.empty() && colour.width == frame.colour_camera.width_px &&
                   colour.height == frame.colour_camera.height_px;
   }
+
+  /// Makes the updates with another writer of the same octree.
+  void write_with(OctreeWriter tree) { tree_ = tree; }
 
   /// Returns a free cube at the minimum log-odds; further misses do not change it.
   [[nodiscard]] Slot saturated_free() const { return Slot::cube(static_cast<LogOdds>(log_odds_.min)); }
@@ -261,7 +264,7 @@ class LeafUpdate {
     return {channel(own.r, seen.r), channel(own.g, seen.g), channel(own.b, seen.b)};
   }
 
-  BlockOctree& tree_;
+  OctreeWriter tree_;
   const Frame& frame_;
   const FusionConfig& config_;
   CellSize size_;
@@ -304,7 +307,7 @@ struct ChildHits {
 template <typename Float8>
 class Descent {
  public:
-  Descent(BlockOctree& tree, const Frame& frame, const Eigen::Isometry3d& T_camera_world,
+  Descent(OctreeWriter tree, const Frame& frame, const Eigen::Isometry3d& T_camera_world,
           const FusionConfig& config, const DepthPyramid& pyramid)
       : tree_(tree),
         config_(config),
@@ -322,12 +325,13 @@ class Descent {
     const Cell root = cell_at(0, root_centre, 0, hits);
     std::vector<Cell> branches;
     if (threads > 1) branches_ = &branches;
-    tree_.root = update(tree_.root, 0, root);
+    BlockOctree& tree = tree_.tree();
+    tree.root = update(tree.root, 0, root);
     branches_ = nullptr;
     if (branches.empty()) return;
     update_branches(branches, threads);
-    tree_.gather_free();
-    tree_.root = prune_above_branches(tree_.root, 0);
+    tree.gather_free();
+    tree.root = prune_above_branches(tree.root, 0);
   }
 
  private:
@@ -389,16 +393,23 @@ class Descent {
   }
 
   void update_branches(std::span<const Cell> branches, unsigned threads) {
+    std::vector<Descent> of_threads(threads, *this);
+    for (unsigned lane = 0; lane < threads; ++lane) of_threads[lane].write_with({tree_.tree(), lane});
     parallel_for(branches.size(), threads, [&](std::size_t i, unsigned thread) {
-      pool_lane = thread;
       Slot& slot = slot_of(branches[i].code);
-      slot = update(slot, kBranchDepth, branches[i]);
+      slot = of_threads[thread].update(slot, kBranchDepth, branches[i]);
     });
+  }
+
+  void write_with(OctreeWriter tree) {
+    tree_ = tree;
+    voxels_.write_with(tree);
+    coarse_cells_.write_with(tree);
   }
 
   // Returns the node at kBranchDepth with a Morton code. All nodes above it must be inner blocks.
   Slot& slot_of(std::uint64_t code) {
-    Slot* slot = &tree_.root;
+    Slot* slot = &tree_.tree().root;
     for (unsigned depth = 0; depth < kBranchDepth; ++depth)
       slot = &tree_.inner(*slot).slots[code >> 3U * (kBranchDepth - 1 - depth) & 7U];
     return *slot;
@@ -514,7 +525,7 @@ class Descent {
     }
   }
 
-  BlockOctree& tree_;
+  OctreeWriter tree_;
   const FusionConfig& config_;
   const DepthPyramid& pyramid_;
   Pinhole camera_;

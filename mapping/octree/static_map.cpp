@@ -176,7 +176,7 @@ class BlockReader {
   }
 
   void read() {
-    tree_.root = take_node(take(kinds_), 0);
+    tree_.tree().root = take_node(take(kinds_), 0);
     require_used(kinds_);
     require_used(cubes_);
     require_used(log_odds_);
@@ -278,7 +278,7 @@ class BlockReader {
   }
 
   ColumnReader& in_;
-  BlockOctree& tree_;
+  OctreeWriter tree_;
   /// Steps of the file's integers, divided by those of the tree.
   struct StepRatios {
     float log_odds, distance, weight;
@@ -390,7 +390,7 @@ void perform(SampleAction action, LogOdds free, LeafBlock& block, unsigned i) {
 using Decide = std::function<SampleAction(const SurfaceSample&)>;
 
 // revise() for a leaf block of coarse cells.
-Slot revise_coarse(BlockOctree& tree, Slot node, const NodePlace& place, LogOdds free, const KeyRange& range,
+Slot revise_coarse(OctreeWriter tree, Slot node, const NodePlace& place, LogOdds free, const KeyRange& range,
                    const Decide& decide) {
   const LeafBlock& coarse = tree.leaves(node);
   std::array<std::array<SampleAction, 8>, 8> actions{};  // of the voxels in each cell
@@ -416,7 +416,7 @@ Slot revise_coarse(BlockOctree& tree, Slot node, const NodePlace& place, LogOdds
 
 // Calls `decide` on every voxel of the subtree that has a sample or is occupied, and is in the range. Coarse
 // cells are refined if an action other than kKeep is returned for a voxel. Returns the node's new state.
-Slot revise(BlockOctree& tree, Slot node, const NodePlace& place, LogOdds free, const KeyRange& range,
+Slot revise(OctreeWriter tree, Slot node, const NodePlace& place, LogOdds free, const KeyRange& range,
             const Decide& decide) {
   if (!node.is_block() || !range.meets(place)) return node;
   if (node.is_leaf_block() && place.depth == kCoarseDepth)
@@ -452,7 +452,7 @@ Sides sides_of(const BlockOctree& tree, const NodePlace& place) {
 // Adds log-odds to everything in a node, with clamping.
 class AddLogOdds {
  public:
-  AddLogOdds(BlockOctree& tree, const FusionConfig& config, float log_odds)
+  AddLogOdds(OctreeWriter tree, const FusionConfig& config, float log_odds)
       : tree_(tree), config_(config), added_(log_odds) {}
 
   [[nodiscard]] Slot to_node(Slot node, unsigned depth) const {
@@ -479,13 +479,13 @@ class AddLogOdds {
   }
 
  private:
-  BlockOctree& tree_;
+  OctreeWriter tree_;
   const FusionConfig& config_;
   float added_;
 };
 
 // Averages a sample of another map into voxel i.
-void add_sample(BlockOctree& tree, LeafBlock& block, unsigned i, const SurfaceSample& sample) {
+void add_sample(OctreeWriter tree, LeafBlock& block, unsigned i, const SurfaceSample& sample) {
   const BlockUnits& units = tree.units();
   const float weight = std::clamp(std::round(sample.weight / units.weight), 1.0F, 65535.0F);
   const float sum = static_cast<float>(block.weight[i]) + weight;
@@ -521,7 +521,7 @@ void require_cube(const VoxelIndex& lowest, int edge_voxels) {
 // Adds another map's nodes in a range of keys to a tree. No leaf block may be partly in the range.
 class AddMap {
  public:
-  AddMap(BlockOctree& tree, const FusionConfig& config, const BlockOctree& other, const KeyRange& range)
+  AddMap(OctreeWriter tree, const FusionConfig& config, const BlockOctree& other, const KeyRange& range)
       : tree_(tree), config_(config), other_(other), range_(range) {}
 
   /// Returns the new state of the tree's `node` after the other map's node at the same place was added.
@@ -586,7 +586,7 @@ class AddMap {
     return tree_.prune(node, children);
   }
 
-  BlockOctree& tree_;
+  OctreeWriter tree_;
   const FusionConfig& config_;
   const BlockOctree& other_;
   KeyRange range_;

@@ -335,7 +335,7 @@ class NodeReader {
   }
   const std::filesystem::path& path_;
   ByteReader& bytes_;
-  BlockOctree& tree_;
+  OctreeWriter tree_;
   std::uint64_t nodes_ = 0;
 };
 

@@ -17,13 +17,11 @@ namespace roomradar {
 
 /// Max number of threads that may change one pool at a time.
 inline constexpr unsigned kMaxLanes = kMaxThreads;
-/// Lane of the calling thread, below kMaxLanes: index of the free list that the thread uses. Threads that
-/// change one pool concurrently need different lanes.
-inline thread_local unsigned pool_lane = 0;
 
 /// Pool of equally sized blocks that are addressed by 32-bit numbers. Blocks never move. References thus stay
-/// valid while other blocks are allocated. Number 0 is reserved and means "none". Threads of different lanes
-/// may concurrently allocate, free and access different blocks.
+/// valid while other blocks are allocated. Number 0 is reserved and means "none". A lane is a free list and a
+/// chunk of unused blocks; its number is below kMaxLanes. Threads with different lanes may concurrently
+/// allocate, free and access different blocks.
 template <typename Block>
 class BlockPool {
  public:
@@ -33,8 +31,8 @@ class BlockPool {
   }
 
   /// Allocates a block, initialised to Block{}, and returns its number. Throws Error if the limit is reached.
-  std::uint32_t take() {
-    Lane& lane = lanes_[pool_lane];
+  std::uint32_t take(unsigned lane_number) {
+    Lane& lane = lanes_[lane_number];
     std::uint32_t number = 0;
     if (lane.free.empty()) {
       if (lane.next % kChunk == 0) lane.next = add_chunk();
@@ -48,9 +46,9 @@ class BlockPool {
     (*this)[number] = Block{};
     return number;
   }
-  void give_back(std::uint32_t number) {
-    --lanes_[pool_lane].in_use;
-    lanes_[pool_lane].free.push_back(number);
+  void give_back(std::uint32_t number, unsigned lane_number) {
+    --lanes_[lane_number].in_use;
+    lanes_[lane_number].free.push_back(number);
   }
   /// Moves the free lists of all other lanes to the first lane. No other thread may use the pool during the
   /// call.
@@ -86,8 +84,7 @@ class BlockPool {
 
   // Returns the number of the first block of a new chunk.
   std::uint32_t add_chunk() {
-    static std::mutex adding;
-    const std::scoped_lock lock(adding);
+    const std::scoped_lock lock(adding_chunk_);
     const auto first = static_cast<std::uint32_t>(chunks_.size()) * kChunk;
     if (first > limit_) throw_full();
     chunks_.push_back(std::make_unique<Block[]>(kChunk));
@@ -99,6 +96,7 @@ class BlockPool {
   }
 
   std::uint32_t limit_;
+  std::mutex adding_chunk_;  // guards the size of chunks_
   std::vector<std::unique_ptr<Block[]>> chunks_;
   std::array<Lane, kMaxLanes> lanes_;
 };

@@ -92,7 +92,7 @@ TEST(CellLevels, VoxelsOfACoarseCellLieOnThePlaneThatItsBlockMeasures) {
   Sides all, none;
   for (unsigned k = 0; k < 6; ++k) {
     const Eigen::Vector3d low = (k % 2 == 0 ? -2.0 : 2.0) * Eigen::Vector3d::Unit(k / 2);
-    all[k] = tree.prune(Slot(), plane_block(low, slope));
+    all[k] = OctreeWriter(tree).prune(Slot(), plane_block(low, slope));
   }
   const LeafBlock block = plane_block(Eigen::Vector3d::Zero(), slope);
   for (const Sides& sides : {all, none})
