@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "mapping/types/depth_noise.hpp"
+#include "mapping/types/fibonacci_hash.hpp"
 #include "mapping/types/voxel_key.hpp"
 
 namespace roomradar {
@@ -18,7 +19,7 @@ constexpr int kAllRound = 7;  // neighbours of an interior cell, of eight in a f
 /// Returns the slot of a cell in the hash table, or the empty slot where it belongs.
 std::uint32_t find_cell(const ChangeClusters& clusters, std::uint64_t code) {
   const std::size_t mask = clusters.table.size() - 1;
-  for (std::size_t at = (code * 0x9E37'79B9'7F4A'7C15U) >> 32U & mask;; at = (at + 1) & mask)
+  for (std::size_t at = fibonacci_hash(code) >> 32U & mask;; at = (at + 1) & mask)
     if (clusters.table[at] == kNoCell || clusters.cells[clusters.table[at]].code == code)
       return static_cast<std::uint32_t>(at);
 }

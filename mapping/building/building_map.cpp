@@ -11,6 +11,7 @@
 
 #include "mapping/alignment/keyframe.hpp"
 #include "mapping/localization/keyframe_database_file.hpp"
+#include "mapping/types/fibonacci_hash.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
@@ -24,7 +25,7 @@ using Position = std::array<std::uint64_t, 3>;
 struct PositionHash {
   std::size_t operator()(const Position& p) const {
     std::uint64_t hash = 0;
-    for (const std::uint64_t part : p) hash = (hash ^ part) * 0x9E3779B97F4A7C15ULL;  // Fibonacci hashing
+    for (const std::uint64_t part : p) hash = fibonacci_hash(hash ^ part);
     return static_cast<std::size_t>(hash ^ (hash >> 32));
   }
 };

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "mapping/types/depth_noise.hpp"
+#include "mapping/types/fibonacci_hash.hpp"
 #include "mapping/types/system/parallel_for.hpp"
 #include "mapping/types/voxel_key.hpp"
 
@@ -182,8 +183,7 @@ Eigen::Vector3i cell_of(const Eigen::Vector3f& point_world) {
 }
 
 std::size_t hash_of(const PatchIndex::OfSize& known, const Eigen::Vector3i& cell) {
-  const std::uint64_t mixed = voxel_key(cell) * 0x9E37'79B9'7F4A'7C15U;
-  return (mixed >> 32U) & (known.last_of_hash.size() - 1);
+  return (fibonacci_hash(voxel_key(cell)) >> 32U) & (known.last_of_hash.size() - 1);
 }
 
 /// Calls visit(patch) for known patches in the cells within half a cell of a point, and for some others,

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "mapping/mesh/triangle_distance.hpp"
+#include "mapping/types/fibonacci_hash.hpp"
 #include "mapping/types/voxel_key.hpp"
 
 namespace roomradar {
@@ -33,7 +34,6 @@ float mean_side_m(const Mesh& mesh) {
                                 : static_cast<float>(sum_m / static_cast<double>(mesh.triangles.size()));
 }
 
-std::uint64_t mixed(std::uint64_t code) { return code * 0x9E3779B97F4A7C15U; }
 // Distinguishes cubes with equal hash (the upper bits of a mixed code). Cubes with equal hash and tag cost
 // time but leave results correct.
 std::uint32_t tag_of(std::uint64_t mixed_code) { return static_cast<std::uint32_t>(mixed_code >> 14U); }
@@ -75,7 +75,7 @@ MeshDistanceQuery::MeshDistanceQuery(const Mesh& mesh, float reach_m)
   for_each_part([&](std::uint64_t, std::uint32_t) { ++count; });
   std::vector<Part> parts;
   parts.reserve(count);
-  for_each_part([&](std::uint64_t cube, std::uint32_t t) { parts.push_back({mixed(cube), t}); });
+  for_each_part([&](std::uint64_t cube, std::uint32_t t) { parts.push_back({fibonacci_hash(cube), t}); });
   // About one hash value per triangle, more if triangles overlap very many cubes.
   const std::size_t hashes = std::max(mesh.triangles.size(), parts.size() / 4);
   hash_shift_ = 64 - static_cast<int>(std::bit_width(hashes | 1U));
@@ -126,7 +126,7 @@ void MeshDistanceQuery::visit_near(const Eigen::Vector3f& p, float radius_m, con
   for (int z = low.z(); z <= high.z(); ++z)
     for (int y = low.y(); y <= high.y(); ++y)
       for (int x = low.x(); x <= high.x(); ++x) {
-        const std::uint64_t wanted = mixed(voxel_key(x, y, z));
+        const std::uint64_t wanted = fibonacci_hash(voxel_key(x, y, z));
         const std::size_t hash = hash_of(wanted);
         const std::uint32_t tag = tag_of(wanted);
         for (std::uint32_t i = first_of_hash_[hash]; i < first_of_hash_[hash + 1]; ++i)

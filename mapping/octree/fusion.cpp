@@ -12,6 +12,7 @@
 #include "mapping/octree/cell_levels.hpp"
 #include "mapping/octree/node_visibility.hpp"
 #include "mapping/types/depth_noise.hpp"
+#include "mapping/types/fibonacci_hash.hpp"
 #include "mapping/types/frame.hpp"
 #include "mapping/types/simd8f.hpp"
 #include "mapping/types/system/parallel_for.hpp"
@@ -511,7 +512,7 @@ class Descent {
   // True in one frame of sixteen, in which even a colour of much weight is updated; the phase differs between
   // blocks.
   [[nodiscard]] bool is_colours_turn(std::uint64_t code) const {
-    return (((code * 0x9E37'79B9'7F4A'7C15U) >> 60U) + frame_index_) % 16 == 0;
+    return ((fibonacci_hash(code) >> 60U) + frame_index_) % 16 == 0;
   }
 
   void prefetch_children(const InnerBlock& block, unsigned which) const {

@@ -3,6 +3,7 @@
 
 #include <bit>
 
+#include "mapping/types/fibonacci_hash.hpp"
 #include "mapping/types/voxel_key.hpp"
 
 namespace roomradar {
@@ -16,7 +17,7 @@ constexpr std::uint32_t kEmpty = ~std::uint32_t{0};
 
 // Each step can be inverted, so different bricks have different hashes.
 std::uint64_t hash_of(const VoxelIndex& first) {
-  const std::uint64_t hash = voxel_key(first) * 0x9E37'79B9'7F4A'7C15U;  // 2^64 / golden ratio
+  const std::uint64_t hash = fibonacci_hash(voxel_key(first));
   return hash ^ hash >> 32U;
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mapping/types/fibonacci_hash.hpp"
+
 namespace roomradar {
 
 MaskKey mask_key(const GpuMesh& mesh, const Eigen::Vector3d& u_mesh) {
@@ -28,7 +30,7 @@ void MaskCache::forget() {
 std::size_t& MaskCache::head(const MaskKey& key) {
   std::uint64_t hash = key.revision;
   for (const std::int64_t part : key.direction) {
-    hash = (hash ^ static_cast<std::uint64_t>(part)) * 0x9E3779B97F4A7C15ULL;
+    hash = fibonacci_hash(hash ^ static_cast<std::uint64_t>(part));
     hash ^= hash >> 29U;
   }
   return heads_[hash % heads_.size()];

@@ -47,7 +47,7 @@ void draw_box(ImDrawList& draw, const std::function<Eigen::Vector3d(int)>& corne
 std::string what_it_does(const ShownObject& object) {
   if (!object.in_room) return "not in the room";
   if (object.is_carried) return "carried";
-  if (object.placement.stuck) return "stuck in a surface";
+  if (object.stuck) return "stuck in a surface";
   if (object.asleep) return "at rest" + std::string(support_words(object.rests_on));
   std::array<char, 32> text{};
   format_classic(text.data(), text.size(), "moves at %.1f m/s", object.velocity_world_mps.norm());
