@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "mapping/types/depth_noise.hpp"
+#include "mapping/types/disjoint_sets.hpp"
 #include "mapping/types/fibonacci_hash.hpp"
 #include "mapping/types/voxel_key.hpp"
 
@@ -26,11 +27,7 @@ std::uint32_t find_cell(const ChangeClusters& clusters, std::uint64_t code) {
 
 /// Returns the root cell of a cell's object.
 std::uint32_t object_of(std::vector<ChangeCell>& cells, std::uint32_t cell) {
-  while (cells[cell].joined_to != cell) {
-    cells[cell].joined_to = cells[cells[cell].joined_to].joined_to;
-    cell = cells[cell].joined_to;
-  }
-  return cell;
+  return find_root(cell, [&](std::uint32_t of) -> std::uint32_t& { return cells[of].joined_to; });
 }
 
 }  // namespace

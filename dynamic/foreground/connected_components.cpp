@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "mapping/types/depth_noise.hpp"
+#include "mapping/types/disjoint_sets.hpp"
 
 namespace roomradar {
 namespace {
@@ -24,11 +25,7 @@ inline int next_marked(const std::uint8_t* evidence, int x, int width, std::uint
 }
 
 std::uint32_t root_of(std::vector<PixelRun>& runs, std::uint32_t run) {
-  while (runs[run].region != run) {
-    runs[run].region = runs[runs[run].region].region;
-    run = runs[run].region;
-  }
-  return run;
+  return find_root(run, [&](std::uint32_t of) -> std::uint32_t& { return runs[of].region; });
 }
 
 void join(std::vector<PixelRun>& runs, std::uint32_t a, std::uint32_t b) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "mapping/types/depth_noise.hpp"
+#include "mapping/types/disjoint_sets.hpp"
 
 namespace roomradar {
 namespace {
@@ -93,8 +94,7 @@ void find_islands(ExpectedBounds& bounds) {
   std::vector<ExpectedBounds::BlockRun>& runs = bounds.runs;
   runs.clear();
   const auto root_of = [&](std::size_t run) {
-    while (runs[run].parent != run) run = runs[run].parent = runs[runs[run].parent].parent;
-    return run;
+    return find_root(run, [&](std::size_t of) -> std::size_t& { return runs[of].parent; });
   };
   std::size_t above = 0;
   for (int row = 0; row < grid.rows; ++row) {

@@ -3,6 +3,8 @@
 
 #include <numeric>
 
+#include "mapping/types/disjoint_sets.hpp"
+
 namespace roomradar {
 namespace {
 
@@ -29,8 +31,7 @@ Sheets sheets_of(unsigned signs, unsigned outsides_parted) {
   std::array<unsigned, 12> parent{};
   std::iota(parent.begin(), parent.end(), 0U);
   const auto root = [&](unsigned e) {
-    while (parent[e] != e) e = parent[e];
-    return e;
+    return find_root(e, [&](unsigned of) -> unsigned& { return parent[of]; });
   };
   const auto is_diagonal = [&](const std::array<unsigned, 4>& c) {
     return is_inside(signs, c[0]) != is_inside(signs, c[1]) &&
