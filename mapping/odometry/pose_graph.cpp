@@ -4,6 +4,7 @@
 #include <ceres/ceres.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "mapping/odometry/relative_pose_residual.hpp"
@@ -62,16 +63,22 @@ ceres::Solver::Options solver_options() {
 }
 
 /// Returns the measurements that can move a pose, constraints first.
-/// @param count        number of poses
-/// @param is_constant  callable with the index of a pose; true if the pose is constant
+/// @param count          number of poses
+/// @param is_constant    callable with the index of a pose; true if the pose is constant
+/// @param constraint_of  out: index in `constraints` of each measured constraint
 template <typename IsConstant>
 std::vector<Measured> usable_measurements(std::size_t count, const std::vector<PoseConstraint>& constraints,
                                           const std::vector<PoseAnchor>& anchors,
-                                          const IsConstant& is_constant) {
+                                          const IsConstant& is_constant,
+                                          std::vector<std::size_t>& constraint_of) {
   std::vector<Measured> measured;
-  for (const PoseConstraint& c : constraints) {
+  for (std::size_t i = 0; i < constraints.size(); ++i) {
+    const PoseConstraint& c = constraints[i];
     if (c.a >= count || (is_constant(c.a) && is_constant(c.b))) continue;  // both constant: moves nothing
-    if (const auto m = usable(c.a, c.b, count, c.T_a_b, c.information, c.robust)) measured.push_back(*m);
+    if (const auto m = usable(c.a, c.b, count, c.T_a_b, c.information, c.robust)) {
+      measured.push_back(*m);
+      constraint_of.push_back(i);
+    }
   }
   for (const PoseAnchor& anchor : anchors) {
     if (anchor.pose < count && is_constant(anchor.pose)) continue;
@@ -102,14 +109,16 @@ std::vector<int> number_free_poses(std::size_t count, const std::vector<Measured
 
 /// Adds a residual per measurement, and holds all poses without a place constant. The problem keeps pointers
 /// to `blocks`.
-void add_residuals(const std::vector<Measured>& measured, const std::vector<int>& place,
-                   std::vector<PoseBlock>& blocks, ceres::Problem& problem) {
+std::vector<ceres::ResidualBlockId> add_residuals(const std::vector<Measured>& measured,
+                                                  const std::vector<int>& place,
+                                                  std::vector<PoseBlock>& blocks, ceres::Problem& problem) {
+  std::vector<ceres::ResidualBlockId> ids;
   for (const Measured& m : measured) {
     auto* cost = new ceres::AutoDiffCostFunction<RelativePoseResidual, 6, 3, 4, 3, 4>(
         new RelativePoseResidual{m.T_a_b.inverse(), m.square_root});
-    problem.AddResidualBlock(cost, m.robust ? new ceres::CauchyLoss(kRobustSigma) : nullptr,
-                             blocks[m.a].t.data(), blocks[m.a].q.coeffs().data(), blocks[m.b].t.data(),
-                             blocks[m.b].q.coeffs().data());
+    ids.push_back(problem.AddResidualBlock(cost, m.robust ? new ceres::CauchyLoss(kRobustSigma) : nullptr,
+                                           blocks[m.a].t.data(), blocks[m.a].q.coeffs().data(),
+                                           blocks[m.b].t.data(), blocks[m.b].q.coeffs().data()));
   }
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     if (!problem.HasParameterBlock(blocks[i].t.data())) continue;
@@ -118,6 +127,7 @@ void add_residuals(const std::vector<Measured>& measured, const std::vector<int>
     problem.SetParameterBlockConstant(blocks[i].t.data());
     problem.SetParameterBlockConstant(blocks[i].q.coeffs().data());
   }
+  return ids;
 }
 
 }  // namespace
@@ -143,6 +153,7 @@ PoseGraphResult optimise_pose_graph(std::vector<Eigen::Isometry3d>& T_world_came
                                     const std::vector<PoseAnchor>& anchors,
                                     const std::vector<bool>& constant) {
   PoseGraphResult result;
+  result.residual_sigma.assign(constraints.size(), -1.0);
   const std::size_t count = T_world_camera.size();
   std::vector<PoseBlock> blocks;
   blocks.reserve(count + 1);
@@ -158,7 +169,9 @@ PoseGraphResult optimise_pose_graph(std::vector<Eigen::Isometry3d>& T_world_came
   const auto is_constant = [&](std::size_t i) {
     return constant.empty() ? i == 0 : i < constant.size() && constant[i];
   };
-  std::vector<Measured> measured = usable_measurements(count, constraints, anchors, is_constant);
+  std::vector<std::size_t> constraint_of;
+  std::vector<Measured> measured =
+      usable_measurements(count, constraints, anchors, is_constant, constraint_of);
   if (measured.empty()) {
     result.status = PoseGraphStatus::kNothingToSolve;
     return result;
@@ -168,7 +181,7 @@ PoseGraphResult optimise_pose_graph(std::vector<Eigen::Isometry3d>& T_world_came
   for (std::size_t i = 0; i < count; ++i) result.untied += !is_constant(i) && place[i] < 0 ? 1 : 0;
 
   ceres::Problem problem;
-  add_residuals(measured, place, blocks, problem);
+  const std::vector<ceres::ResidualBlockId> ids = add_residuals(measured, place, blocks, problem);
   measured = std::vector<Measured>();  // the problem has copies, and the solver needs memory
   ceres::Solver::Summary summary;
   ceres::Solve(solver_options(), &problem, &summary);
@@ -180,6 +193,11 @@ PoseGraphResult optimise_pose_graph(std::vector<Eigen::Isometry3d>& T_world_came
     if (place[i] < 0) continue;
     T_world_camera[i].translation() = blocks[i].t;
     T_world_camera[i].linear() = blocks[i].q.normalized().toRotationMatrix();
+  }
+  for (std::size_t i = 0; i < constraint_of.size(); ++i) {
+    double half_square = 0.0;
+    problem.EvaluateResidualBlock(ids[i], false, &half_square, nullptr, nullptr);
+    result.residual_sigma[constraint_of[i]] = std::sqrt(2.0 * half_square);
   }
   result.cost_before = summary.initial_cost;
   result.cost_after = summary.final_cost;

@@ -52,6 +52,8 @@ struct PoseGraphResult {
   /// Initial cost: half the sum of the squared residuals, which are in standard deviations.
   double cost_before = 0.0;
   double cost_after = 0.0;
+  /// Norm of each constraint's final residual, in standard deviations; -1: the constraint was left out.
+  std::vector<double> residual_sigma;
 };
 
 /// Returns a sentence that states the status and the count of unconstrained poses.
@@ -63,7 +65,7 @@ std::string describe(const PoseGraphResult& result);
 ///
 /// Leaves out measurements between two constant poses, and invalid measurements. A measurement is invalid if
 /// an index is out of range, both indices are equal, or a number is not finite. It is also invalid if the
-/// information is zero or not positive semidefinite.
+/// information is zero or not positive semidefinite. Measurements left out get a residual_sigma of -1.
 /// @param constant  per pose: true if the pose is constant; if empty, only the first pose is constant
 PoseGraphResult optimise_pose_graph(std::vector<Eigen::Isometry3d>& T_world_camera,
                                     const std::vector<PoseConstraint>& constraints,

@@ -114,6 +114,7 @@ TEST(PoseGraph, AWrongLoopIsRefused) {
   const PoseGraphResult result = optimise_pose_graph(poses, c.constraints);
   EXPECT_TRUE(is_usable(result.status));
   EXPECT_LT(worst_error_m(poses, c.truth), 0.01);
+  EXPECT_GT(result.residual_sigma.back(), 10.0 * result.residual_sigma.front());
 }
 
 TEST(PoseGraph, WhatNothingMeasuresStaysFinite) {
@@ -184,6 +185,7 @@ TEST(PoseGraph, HeldPosesStayAndOthersMove) {
       {.a = 0, .b = 4, .T_a_b = Eigen::Isometry3d::Identity()});  // wrong, and moves nothing
   const PoseGraphResult result = optimise_pose_graph(poses, constraints, {}, held);
   EXPECT_EQ(result.status, PoseGraphStatus::kSolved);
+  EXPECT_EQ(result.residual_sigma.back(), -1.0);
   EXPECT_EQ(poses[4].matrix(), c.truth[4].matrix());
   EXPECT_LT(worst_error_m(poses, c.truth), 1e-6);
 }
@@ -210,6 +212,7 @@ TEST(PoseGraph, PosesWithoutAWayToTheFirstStay) {
 
 TEST(PoseGraph, BrokenConstraintsAreLeftOut) {
   Circle c = circle();
+  const std::size_t good = c.constraints.size();
   c.constraints.push_back({0, 99, pose(0, 0, 0, 0), Matrix6d::Identity(), false});
   c.constraints.push_back({3, 3, pose(1, 0, 0, 0), Matrix6d::Identity(), false});
   c.constraints.push_back(
@@ -219,6 +222,7 @@ TEST(PoseGraph, BrokenConstraintsAreLeftOut) {
   const PoseGraphResult result = optimise_pose_graph(poses, c.constraints);
   EXPECT_TRUE(is_usable(result.status));
   EXPECT_LT(worst_error_m(poses, c.truth), 1e-6);
+  for (std::size_t i = good; i < c.constraints.size(); ++i) EXPECT_EQ(result.residual_sigma[i], -1.0);
 }
 
 TEST(PoseGraph, NothingToDoIsNotUsable) {
