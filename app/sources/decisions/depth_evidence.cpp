@@ -27,8 +27,8 @@ constexpr double kSurelyAgrees = 0.30, kAgrees = 0.72, kDisagrees = 0.75, kFarDi
 /// An error of the stated depth camera, and of its pose relative to the recorded poses' camera.
 struct CameraError {
   double fx_factor = 1.0, fy_factor = 1.0;  ///< times which the focal lengths are right
-  Eigen::Vector2d principal = {0.0,
-                               0.0};  ///< to be added to the principal point, as part of the image's width
+  /// To be added to the principal point, as part of the image's width.
+  Eigen::Vector2d principal = {0.0, 0.0};
   Eigen::Vector3d turn_rad = {0.0, 0.0, 0.0};  ///< rotation vector, recorded camera -> camera
   Eigen::Vector3d shift_m = {0.0, 0.0, 0.0};   ///< position of the camera in the recorded camera's frame
 };
@@ -722,9 +722,10 @@ void question_poses(DecidedRecording& recording, const std::vector<Pair>& near_p
   evidence.pose_difference_m = now.median_m;
   const auto confirm_scale = [&](const Hypothesis& right) {
     evidence.is_scale_confirmed = true;
+    const std::vector<Pair> far_of_right = far_pairs_of(right.convention);
     for (const double factor : {0.5, 2.0}) {
       Hypothesis scaled{.convention = right.convention, .depth_factor = factor};
-      measure(scaled, near_pairs, far_pairs_of(right.convention));
+      measure(scaled, near_pairs, far_of_right);
       evidence.is_scale_confirmed &= scaled.both() > right.both() + kClearlyBetter;
     }
   };
