@@ -93,6 +93,7 @@ bool add_differences(const DepthImage& from, const DepthImage& to, const Intrins
 /// A frame that was read for the comparison.
 struct Sample {
   DepthImage depth_m;
+  bool has_depth = false;  ///< a hundredth of the pixels or more are measured; a covered lens measures none
   /// Brightness at each pixel of the depth image, 0..1; -1: unknown. Empty: there
   /// is no colour image.
   Image<float> brightness{};
@@ -226,6 +227,9 @@ class Samples {
         for (int y = 0; y < camera_.height_px; ++y)
           for (int x = 0; x < camera_.width_px; ++x)
             sample.depth_m.at(x, y) = full_m_.at(x * stride_ + stride_ / 2, y * stride_ + stride_ / 2);
+        const auto& pixels = sample.depth_m.pixels;
+        const auto measured = std::count_if(pixels.begin(), pixels.end(), [](float z) { return z > 0.0F; });
+        sample.has_depth = static_cast<std::size_t>(measured) * 100 >= pixels.size();
         read_brightness(position, sample);
         place->second = std::move(sample);
       } catch (const Error&) {  // counted when the frame's turn comes
@@ -331,8 +335,8 @@ std::vector<Pair> choose_shifted_pairs(std::size_t frames, const PoseOf& pose_of
   return pairs;
 }
 
-/// Calls use(a, b, T_b_a) for each pair whose frames can be read and have poses, as if all depths were multiplied
-/// by depth_factor: that is the same as scaling the camera's motion the other way.
+/// Calls use(a, b, T_b_a) for each pair whose frames can be read and have depth and poses, as if all depths
+/// were multiplied by depth_factor: that is the same as scaling the camera's motion the other way.
 template <typename Use>
 void for_each_posed_pair(const std::vector<Pair>& pairs, Samples& samples, const PoseOf& pose_of_position,
                          double depth_factor, const CameraError& error, const Use& use) {
@@ -340,7 +344,7 @@ void for_each_posed_pair(const std::vector<Pair>& pairs, Samples& samples, const
   for (const Pair& pair : pairs) {
     const Sample *a = samples.at(pair.a), *b = samples.at(pair.b);
     const auto T_world_a = pose_of_position(pair.a), T_world_b = pose_of_position(pair.b);
-    if (!a || !b || !T_world_a || !T_world_b) continue;
+    if (!a || !b || !a->has_depth || !b->has_depth || !T_world_a || !T_world_b) continue;
     Eigen::Isometry3d T_b_a =
         T_recorded_camera.inverse() * T_world_b->inverse() * *T_world_a * T_recorded_camera;
     T_b_a.translation() /= depth_factor;
@@ -367,6 +371,20 @@ DepthDifference mean_difference(const std::vector<Pair>& pairs, Samples& samples
   mean.disagreement /= static_cast<double>(count);
   mean.median_m = median_of(std::move(medians_m));
   return mean;
+}
+
+/// Returns the number of pairs whose depth agrees, and that of all pairs whose frames have poses.
+std::pair<std::size_t, std::size_t> count_agreeing(const std::vector<Pair>& pairs, Samples& samples,
+                                                   const PoseOf& pose_of_position) {
+  std::size_t agreeing = 0, compared = 0;
+  for_each_posed_pair(pairs, samples, pose_of_position, 1.0, {},
+                      [&](const Sample& a, const Sample& b, const Eigen::Isometry3d& T_b_a) {
+                        const DepthDifference one =
+                            depth_difference(a.depth_m, b.depth_m, samples.camera(), T_b_a);
+                        agreeing += one.disagreement < kAgrees ? 1 : 0;
+                        ++compared;
+                      });
+  return {agreeing, compared};
 }
 
 /// Returns the disagreement of depth plus that of brightness of each pair whose frames have poses.
@@ -810,13 +828,24 @@ void question_poses(DecidedRecording& recording, const std::vector<Pair>& near_p
       adopt_or_advise(recording, now, each, samples.full_camera(), is_convention_given);
     return;
   }
-  if (now.near <= kDisagrees && now.far <= kFarDisagrees && now.far > kDoubtful)
+  const bool disagrees = now.near > kDisagrees || now.far > kFarDisagrees;
+  // A hand before the lens, or a stretch of wrong poses, makes some pairs disagree, and wrong poses all of
+  // them.
+  constexpr double kMostAgree = 0.5;
+  const auto [agreeing, compared] = count_agreeing(near_pairs, samples, under(now.convention));
+  if (disagrees && static_cast<double>(agreeing) >= kMostAgree * static_cast<double>(compared)) {
+    recording.report->add({"poses",
+                           "depth of nearby frames disagrees under the recorded poses in " +
+                               std::to_string(compared - agreeing) + " of " + std::to_string(compared) +
+                               " places, and agrees in the others; they are used",
+                           0, "--poses tracked", true});
+  } else if (!disagrees && now.far > kDoubtful) {
     recording.report->add(
         {"poses",
          "depth of frames some way apart differs more than usual under the recorded poses, by " +
              mm_text(now.median_m) + " between near ones; they are used",
          0, "--poses tracked", true});
-  if (now.near > kDisagrees || now.far > kFarDisagrees) {
+  } else if (disagrees) {
     evidence.poses_disagree = true;
     recording.poses_are_used = is_convention_given;
     recording.report->add(

@@ -168,6 +168,17 @@ void lose_depth(RecordingFacts& facts, const std::function<bool(std::size_t)>& i
   };
 }
 
+/// Replaces the depth images of a fifth of the frames by one of `covered_m` everywhere; 0: nothing is
+/// measured.
+void cover_lens(RecordingFacts& facts, float covered_m) {
+  facts.read_depth = [read = facts.read_depth, covered_m, count = facts.frames.size()](
+                         std::size_t frame, double unit_m, DepthImage& depth_m) {
+    read(frame, unit_m, depth_m);
+    if (frame >= count * 2 / 5 && frame < count * 3 / 5)
+      std::fill(depth_m.pixels.begin(), depth_m.pixels.end(), covered_m);
+  };
+}
+
 std::vector<Mutation> mutations() {
   std::vector<Mutation> all;
   const auto add = [&](const std::string& name, std::vector<std::string> topics, auto change) {
@@ -280,6 +291,8 @@ std::vector<Mutation> mutations() {
       throw Error("image " + std::to_string(i) + ": is empty");
     };
   });
+  add("lens covered", {"poses"}, [](RecordingFacts& f) { cover_lens(f, 0.0F); });
+  add("hand before the lens", {"poses"}, [](RecordingFacts& f) { cover_lens(f, 0.3F); });
   add("depth images of half the size", {"images"}, [](RecordingFacts& f) {
     f.read_depth = [read = f.read_depth](std::size_t frame, double unit_m, DepthImage& depth_m) {
       read(frame, unit_m, depth_m);
