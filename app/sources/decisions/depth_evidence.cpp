@@ -387,18 +387,21 @@ std::pair<std::size_t, std::size_t> count_agreeing(const std::vector<Pair>& pair
   return {agreeing, compared};
 }
 
-/// Returns the disagreement of depth plus that of brightness of each pair whose frames have poses.
-std::vector<double> pair_disagreements(const std::vector<Pair>& pairs, Samples& samples,
-                                       const PoseOf& pose_of_position, double depth_factor,
-                                       const CameraError& error) {
-  std::vector<double> disagreements;
+/// Returns the disagreement of depth plus that of brightness of each pair; unset: a frame has no pose.
+std::vector<std::optional<double>> pair_disagreements(const std::vector<Pair>& pairs, Samples& samples,
+                                                      const PoseOf& pose_of_position, double depth_factor,
+                                                      const CameraError& error) {
+  std::vector<std::optional<double>> disagreements;
   const Intrinsics camera = without_error(samples.camera(), error);
-  for_each_posed_pair(
-      pairs, samples, pose_of_position, depth_factor, error,
-      [&](const Sample& a, const Sample& b, const Eigen::Isometry3d& T_b_a) {
-        disagreements.push_back(depth_difference(a.depth_m, b.depth_m, camera, T_b_a).disagreement +
-                                brightness_disagreement(a, b, camera, T_b_a).value_or(0.0));
-      });
+  for (const Pair& pair : pairs) {
+    disagreements.emplace_back();
+    for_each_posed_pair({pair}, samples, pose_of_position, depth_factor, error,
+                        [&](const Sample& a, const Sample& b, const Eigen::Isometry3d& T_b_a) {
+                          disagreements.back() =
+                              depth_difference(a.depth_m, b.depth_m, camera, T_b_a).disagreement +
+                              brightness_disagreement(a, b, camera, T_b_a).value_or(0.0);
+                        });
+  }
   return disagreements;
 }
 
@@ -767,6 +770,27 @@ void question_poses(DecidedRecording& recording, const std::vector<Pair>& near_p
     hypothesis.far += now.far - same.far;
     hypothesis.brightness += now.brightness - same.brightness;
   };
+  const auto of_all_pairs = [&](const Hypothesis& hypothesis) {
+    std::vector<std::optional<double>> all;
+    for (const auto* pairs : {&near_pairs, &far_pairs})
+      for (const auto one : pair_disagreements(*pairs, samples, under(hypothesis.convention),
+                                               hypothesis.depth_factor, hypothesis.camera))
+        all.push_back(one);
+    return all;
+  };
+  const std::vector<std::optional<double>> as_recorded = of_all_pairs(now);
+  // A fault of the camera or the convention shows in nearly all pairs; noise helps some and harms others.
+  const auto is_better_in_most = [&](const Hypothesis& hypothesis) {
+    constexpr double kBetter = 0.01, kMostPairs = 0.7;
+    const std::vector<std::optional<double>> fitted = of_all_pairs(hypothesis);
+    std::size_t better = 0, compared = 0;
+    for (std::size_t k = 0; k < fitted.size(); ++k) {
+      if (!fitted[k] || !as_recorded[k]) continue;
+      ++compared;
+      better += *fitted[k] < *as_recorded[k] - kBetter ? 1 : 0;
+    }
+    return static_cast<double>(better) >= kMostPairs * static_cast<double>(compared);
+  };
   Hypothesis best = now;
   for (Hypothesis& hypothesis : hypotheses_of(recording.facts, now.convention)) {
     if (hypothesis.convention.later_by != now.convention.later_by)
@@ -775,7 +799,9 @@ void question_poses(DecidedRecording& recording, const std::vector<Pair>& near_p
       measure(hypothesis, near_pairs,
               hypothesis.convention.unit_m == now.convention.unit_m ? far_pairs
                                                                     : far_pairs_of(hypothesis.convention));
-    if (hypothesis.both() < now.both() - kClearlyBetter && hypothesis.both() < best.both()) best = hypothesis;
+    if (hypothesis.both() < now.both() - kClearlyBetter && hypothesis.both() < best.both() &&
+        is_better_in_most(hypothesis))
+      best = hypothesis;
   }
   // Not all shifts were tried: goes on to the best one near by.
   for (bool goes_on = best.convention.later_by != 0; goes_on;) {
@@ -791,23 +817,6 @@ void question_poses(DecidedRecording& recording, const std::vector<Pair>& near_p
   // Different faults may explain the differences alike: all that come near the best one are named.
   constexpr double kAlike = 0.03;
   std::vector<Hypothesis> fits;
-  const auto of_all_pairs = [&](const Hypothesis& hypothesis) {
-    std::vector<double> all;
-    for (const auto* pairs : {&near_pairs, &far_pairs})
-      for (const double one : pair_disagreements(*pairs, samples, under(hypothesis.convention),
-                                                 hypothesis.depth_factor, hypothesis.camera))
-        all.push_back(one);
-    return all;
-  };
-  const std::vector<double> as_recorded = of_all_pairs(now);
-  // A fault of the camera shows in nearly all pairs; noise helps some and harms others.
-  const auto is_better_in_most = [&](const Hypothesis& hypothesis) {
-    constexpr double kBetter = 0.01, kMostPairs = 0.7;
-    const std::vector<double> fitted = of_all_pairs(hypothesis);
-    std::size_t better = 0;
-    for (std::size_t k = 0; k < fitted.size(); ++k) better += fitted[k] < as_recorded[k] - kBetter ? 1 : 0;
-    return static_cast<double>(better) >= kMostPairs * static_cast<double>(fitted.size());
-  };
   for (const Fitted& fitted : kFitted)
     if (const auto fitting =
             fit(fitted, now, [&](Hypothesis& next) { measure(next, near_pairs, far_pairs); });
