@@ -29,9 +29,10 @@ namespace roomradar {
 ///   depth/N.exr   depth of frame N, m;  rgb/N.jpg: its colour image
 /// Also reads exports that scripts have changed: depth/N.png in mm, and numbers in quotes.
 /// N has no leading zeros. Without frameTimestamps, stamps are N / fps, with 30 as the default of fps.
-/// `poses` may be longer or shorter than the number of frames, absent, or null where tracking was lost. The
-/// recorded camera frame has y up and z backwards, and the recorded world frame has y up. Both are converted
-/// to roomradar's axes. Depth is registered to the colour camera. Gravity follows from the poses, since ARKit
+/// Without dw and dh, depth has the size of its images; without K, an iPhone's camera is assumed. `poses` may
+/// be longer or shorter than the number of frames, absent, or null where tracking was lost. The recorded
+/// camera frame has y up and z backwards, and the recorded world frame has y up. Both are converted to
+/// roomradar's axes. Depth is registered to the colour camera. Gravity follows from the poses, since ARKit
 /// aligns its world frame with gravity.
 /// @throws Error naming the file if the metadata are damaged or do not fit the images
 RecordingFacts index_record3d(const std::filesystem::path& folder);
@@ -155,7 +156,8 @@ RecordingFacts index_tum_rgbd(const std::filesystem::path& folder);
 
 // Recordings of an iPhone or iPad with LiDAR by Stray Scanner.
 
-/// Returns true if `folder` contains a recording by Stray Scanner: odometry.csv, camera_matrix.csv and depth.
+/// Returns true if `folder` contains a recording by Stray Scanner: odometry.csv or camera_matrix.csv, and
+/// depth.
 [[nodiscard]] bool is_stray_scanner(const std::filesystem::path& folder);
 
 /// Lists the frames of a recording by Stray Scanner:
@@ -167,7 +169,8 @@ RecordingFacts index_tum_rgbd(const std::filesystem::path& folder);
 ///
 /// The recorded camera's axes are roomradar's. The recorded world frame has y up and is converted to z up.
 /// Gravity follows from the poses, since ARKit aligns its world frame with gravity. imu.csv is not read.
-/// Lines of odometry.csv that are cut short are left out. Depth images without a line have no pose.
+/// Lines of odometry.csv that are cut short are left out. Depth images without a line have no pose. Without
+/// camera_matrix.csv, an iPhone's camera is assumed.
 /// @throws Error naming the file if camera_matrix.csv is not a 3 x 3 matrix, or no depth image can be read
 RecordingFacts index_stray_scanner(const std::filesystem::path& folder);
 

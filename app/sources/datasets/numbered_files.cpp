@@ -131,6 +131,13 @@ std::optional<ImageSize> size_of_colours(const std::vector<fs::path>& files, con
   }
 }
 
+InputDecision unused_colours(std::int64_t count) {
+  return {"images",
+          std::to_string(count) + (count == 1 ? " colour image has" : " colour images have") +
+              " no depth image of the same number; not used",
+          count};
+}
+
 Intrinsics scaled_to_depth(const Intrinsics& colour, ImageSize depth, const std::string& where) {
   Intrinsics camera = scaled(colour, static_cast<double>(depth.width_px) / colour.width_px);
   if (std::abs(camera.height_px - depth.height_px) > 1)

@@ -42,6 +42,9 @@ ImageSize size_of_images(const std::vector<std::filesystem::path>& files, const 
 std::optional<ImageSize> size_of_colours(const std::vector<std::filesystem::path>& files,
                                          const std::filesystem::path& where, RecordingFacts& facts);
 
+/// Returns the decision about `count` colour images whose number no depth image has.
+InputDecision unused_colours(std::int64_t count);
+
 /// Returns the intrinsics of depth that is registered to colour: those of the colour camera, scaled to the
 /// size `depth`. Throws Error naming `where` if the aspect ratios of depth and colour differ.
 Intrinsics scaled_to_depth(const Intrinsics& colour, ImageSize depth, const std::string& where);

@@ -109,6 +109,7 @@ struct NumberedRecording {
   std::vector<std::string> poses{};     ///< per depth image: its file; empty: none
   bool has_pose_files = false;
   std::int64_t without_colour = 0, first_without_colour = -1;  ///< if colour images are paired by number
+  std::int64_t without_depth = 0;  ///< colour images, if they are paired by number
 };
 
 /// Lists the files, and adds a frame per depth image. Colour images belong to the depth image with the same
@@ -145,6 +146,7 @@ NumberedRecording list_numbered(const fs::path& folder, const fs::path& depth_im
     files.numbers.push_back(number);
     facts.frames.push_back(std::move(frame));
   }
+  files.without_depth = std::ssize(colour_files) - std::ssize(files.colours);
   return files;
 }
 
@@ -172,6 +174,8 @@ void note_missing_colour(const NumberedRecording& files, const fs::path& colour_
                                " frames is missing, the first: number " +
                                std::to_string(files.first_without_colour) + "; these frames are used without",
                            files.without_colour});
+  if (!files.colours.empty() && files.without_depth > 0)
+    facts.notes.push_back(unused_colours(files.without_depth));
 }
 
 }  // namespace

@@ -60,7 +60,33 @@ void read_quoted_numbers(Json& value) {
     if (const auto number = parse_number(value.get_ref<const std::string&>())) value = *number;
 }
 
+/// Reads a depth image, m.
+void read_depth_image(const fs::path& file, double unit_m, DepthImage& depth_m) {
+  if (file.extension() == ".png") return read_depth_file(file, DepthEncoding::kMillimetres, unit_m, depth_m);
+  decode_exr_depth(read_bytes(file, "an EXR image", kMaxExr_bytes), file.string(), depth_m);
+  scale_depth(unit_m, depth_m);
+}
+
+/// Returns the size dw x dh, else that of the first depth image that can be read. Throws Error if there is
+/// none.
+ImageSize depth_size_of(const Json& metadata, const std::map<std::int64_t, fs::path>& depth_images,
+                        const std::string& where) {
+  if (metadata.contains("dw") && metadata.contains("dh"))
+    return {size_px(metadata, "dw", where), size_px(metadata, "dh", where)};
+  for (const auto& [number, file] : depth_images) {
+    try {
+      DepthImage depth_m;
+      read_depth_image(file, 1.0, depth_m);
+      return {depth_m.width, depth_m.height};
+    } catch (const Error&) {  // counted when the frame's turn comes
+    }
+  }
+  throw Error(where + ": states no dw and dh, and no depth image can be read");
+}
+
 Intrinsics colour_camera_of(const Json& metadata, const std::string& where) {
+  if (!metadata.contains("K"))
+    return phone_camera({size_px(metadata, "w", where), size_px(metadata, "h", where)});
   const auto listed = listed_numbers(json_field(metadata, "K", where), 9);
   if (!listed) throw Error(where + ", K: must be a list of 9 numbers");
   const std::vector<double>& K = *listed;
@@ -113,12 +139,15 @@ RecordingFacts index_record3d(const fs::path& folder) {
   RecordingFacts facts{.name = fs::canonical(folder).string()};
   const Intrinsics colour = colour_camera_of(metadata, where);
   facts.rig.colour_camera = colour;
-  const int depth_width = size_px(metadata, "dw", where), depth_height = size_px(metadata, "dh", where);
-  facts.rig.depth_noise = kPhoneLidarNoise;
-  facts.rig.depth_camera = scaled_to_depth(colour, {depth_width, depth_height}, where);
-  facts.camera_source = "K in " + metadata_path.filename().string();
-  facts.is_depth_registered = true;
   const auto depth_images = depth_images_of(folder);
+  facts.rig.depth_noise = kPhoneLidarNoise;
+  facts.rig.depth_camera = scaled_to_depth(colour, depth_size_of(metadata, depth_images, where), where);
+  facts.camera_source = "K in " + metadata_path.filename().string();
+  if (!metadata.contains("K")) {
+    facts.camera_origin = Origin::kAssumed;
+    facts.camera_source = "an iPhone";
+  }
+  facts.is_depth_registered = true;
   const bool are_metres = depth_images.empty() || depth_images.begin()->second.extension() != ".png";
   facts.depth_unit_m = are_metres ? 1.0 : 0.001;
   facts.unit_source =
@@ -137,6 +166,7 @@ RecordingFacts index_record3d(const fs::path& folder) {
 
   const auto images = numbered_files(folder / "rgb", {".jpg", ".jpeg", ".png"});
   std::vector<fs::path> depth_paths, colour_paths;
+  std::ptrdiff_t with_colour = 0;
   for (const auto& [number, file] : depth_images) {
     const auto at = static_cast<std::size_t>(number);
     StatedFrame frame{.time = {.stamp_s = static_cast<double>(number) / fps}};
@@ -155,14 +185,13 @@ RecordingFacts index_record3d(const fs::path& folder) {
     if (image != images.end()) frame.colour = colour_paths.size();
     depth_paths.push_back(file);
     colour_paths.push_back(image == images.end() ? fs::path{} : image->second);
+    if (frame.colour) ++with_colour;
     facts.frames.push_back(std::move(frame));
   }
+  if (with_colour > 0 && with_colour < std::ssize(images))
+    facts.notes.push_back(unused_colours(std::ssize(images) - with_colour));
   facts.read_depth = [depth_paths](std::size_t frame, double unit_m, DepthImage& depth_m) {
-    const fs::path& file = depth_paths[frame];
-    if (file.extension() == ".png")
-      return read_depth_file(file, DepthEncoding::kMillimetres, unit_m, depth_m);
-    decode_exr_depth(read_bytes(file, "an EXR image", kMaxExr_bytes), file.string(), depth_m);
-    scale_depth(unit_m, depth_m);
+    read_depth_image(depth_paths[frame], unit_m, depth_m);
   };
   facts.read_colour = [colour_paths](std::size_t colour_image, ColourImage& image) {
     read_colour_file(colour_paths[colour_image], image);

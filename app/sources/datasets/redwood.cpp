@@ -189,6 +189,8 @@ RecordingFacts registered_images(const fs::path& folder, const fs::path& colour_
   facts.is_depth_registered = true;
   facts.depth_unit_m = depth_unit_m(encoding);
   const ImageSize size = size_of_images(depth_paths, folder);
+  if (!colour_paths.empty() && colour_paths.size() < colours.size())
+    facts.notes.push_back(unused_colours(std::ssize(colours) - std::ssize(colour_paths)));
   facts.rig.depth_camera = {size.width_px, size.height_px, 0, 0, 0, 0};
   if (!colour_paths.empty()) {
     const ImageSize colour_size = size_of_images(colour_paths, folder);

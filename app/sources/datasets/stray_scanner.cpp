@@ -33,7 +33,8 @@ std::size_t for_each_row(const fs::path& path, std::size_t count, const Use& use
   bool is_at_first = true;
   for_each_line(path, [&](std::string_view line, const std::string& /*where*/) {
     std::string text(line);
-    std::replace(text.begin(), text.end(), ',', ' ');
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
     std::vector<double> numbers;
     const auto words = split_words(text);
     for (const std::string_view word : words) {
@@ -86,6 +87,24 @@ std::map<std::int64_t, Odometry> odometry_of(const fs::path& path, std::size_t& 
   return rows;
 }
 
+/// Returns odometry_of() the folder's file, and notes lines that are not rows; empty without the file.
+std::map<std::int64_t, Odometry> read_odometry(const fs::path& folder, RecordingFacts& facts) {
+  const fs::path path = folder / "odometry.csv";
+  if (!fs::exists(path)) {
+    facts.notes.push_back(
+        {"poses", "odometry.csv is missing; depth is used without times and poses", 0, "", true});
+    return {};
+  }
+  std::size_t bad_lines = 0;
+  std::map<std::int64_t, Odometry> odometry = odometry_of(path, bad_lines);
+  if (bad_lines > 0)
+    facts.notes.push_back(
+        {"poses",
+         std::to_string(bad_lines) + " lines of odometry.csv are cut short or not numbers; they are left out",
+         static_cast<std::int64_t>(bad_lines), "", odometry.empty()});
+  return odometry;
+}
+
 /// Sets pixels of confidence 0 to 0.
 void remove_unsure(const Image<std::uint8_t>& confidence, const std::string& where, DepthImage& depth_m) {
   if (confidence.width != depth_m.width || confidence.height != depth_m.height)
@@ -99,8 +118,8 @@ void remove_unsure(const Image<std::uint8_t>& confidence, const std::string& whe
 
 bool is_stray_scanner(const fs::path& folder) {
   std::error_code ignored;
-  return fs::is_regular_file(folder / "odometry.csv", ignored) &&
-         fs::is_regular_file(folder / "camera_matrix.csv", ignored) &&
+  return (fs::is_regular_file(folder / "odometry.csv", ignored) ||
+          fs::is_regular_file(folder / "camera_matrix.csv", ignored)) &&
          fs::is_directory(folder / "depth", ignored);
 }
 
@@ -125,13 +144,7 @@ RecordingFacts index_stray_scanner(const fs::path& folder) {
   facts.has_quaternions = true;
   set_arkit_axes(facts, /*camera_is_opengl=*/false);
 
-  std::size_t bad_lines = 0;
-  const std::map<std::int64_t, Odometry> odometry = odometry_of(folder / "odometry.csv", bad_lines);
-  if (bad_lines > 0)
-    facts.notes.push_back(
-        {"poses",
-         std::to_string(bad_lines) + " lines of odometry.csv are cut short or not numbers; they are left out",
-         static_cast<std::int64_t>(bad_lines)});
+  const std::map<std::int64_t, Odometry> odometry = read_odometry(folder, facts);
   std::vector<fs::path> paths;
   std::vector<std::size_t> numbers;
   std::size_t without_row = 0;
@@ -149,16 +162,29 @@ RecordingFacts index_stray_scanner(const fs::path& folder) {
     paths.push_back(path);
     numbers.push_back(static_cast<std::size_t>(number));
   }
-  if (without_row > 0)
+  if (without_row > 0 && !odometry.empty())
     facts.notes.push_back({"poses",
                            std::to_string(without_row) +
                                " depth images have no line in odometry.csv; they are used "
                                "without a pose",
                            static_cast<std::int64_t>(without_row)});
+  if (const std::size_t with_row = paths.size() - without_row; with_row < odometry.size())
+    facts.notes.push_back({"images",
+                           std::to_string(odometry.size() - with_row) + " of " +
+                               std::to_string(odometry.size()) +
+                               " frames of odometry.csv have no depth image; they are left out",
+                           static_cast<std::int64_t>(odometry.size() - with_row)});
   const ImageSize depth_size = size_of_images(paths, folder);
   std::optional<ImageSize> video_size;
   if (video) video_size = ImageSize{video->width_px(), video->height_px()};
-  const Intrinsics colour = camera_matrix_of(folder / "camera_matrix.csv", video_size, depth_size);
+  const fs::path matrix = folder / "camera_matrix.csv";
+  const bool is_camera_stated = fs::exists(matrix);
+  const Intrinsics colour = is_camera_stated ? camera_matrix_of(matrix, video_size, depth_size)
+                                             : phone_camera(video_size.value_or(depth_size));
+  if (!is_camera_stated) {
+    facts.camera_origin = Origin::kAssumed;
+    facts.camera_source = "an iPhone";
+  }
   if (video) facts.rig.colour_camera = colour;
   facts.rig.depth_camera = scaled_to_depth(colour, depth_size, folder.string());
   facts.read_depth = [paths](std::size_t frame, double unit_m, DepthImage& depth_m) {

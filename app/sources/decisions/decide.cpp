@@ -178,13 +178,34 @@ void report_lost_poses(const RecordingFacts& facts, InputReport& report) {
       first = "the first at image " + std::to_string(i) + ", which " + facts.frames[i].pose_fault;
     ++lost;
   }
+  const bool is_any_left =
+      (facts.pose_track && !facts.pose_track->empty()) ||
+      std::any_of(facts.frames.begin(), facts.frames.end(),
+                  [](const StatedFrame& frame) { return frame.T_world_camera.has_value(); });
   if (lost > 0)
     report.add({"poses",
                 std::to_string(lost) +
                     (lost == 1 ? " recorded pose is lost or no rigid transform; its frame is"
                                : " recorded poses are lost or no rigid transform; their frames are") +
                     " used without a pose" + (first.empty() ? "" : " (" + first + ")"),
-                static_cast<std::int64_t>(lost)});
+                static_cast<std::int64_t>(lost), "", !is_any_left});
+}
+
+/// Advises on poses that are read frame by frame, if none of those that were tried can be used.
+void advise_on_unusable_poses(const DecidedRecording& recording) {
+  constexpr std::size_t kTried = 20;
+  if (!recording.facts.read_pose || recording.facts.pose_track) return;
+  std::string first_fault;
+  const std::size_t frames = recording.frames.size(), tried = std::min(kTried, frames);
+  for (std::size_t k = 0; k < tried; ++k) {
+    const DecidedFrame& frame = recording.frames[k * frames / tried];
+    const StatedPose pose = recording.facts.read_pose(frame.stated, frame.stamp_s);
+    if (pose.T_world_camera) return;
+    if (first_fault.empty()) first_fault = pose.fault;
+  }
+  if (!first_fault.empty())
+    recording.report->add(
+        {"poses", "no recorded pose that was tried can be used, the first: " + first_fault, 0, "", true});
 }
 
 /// Reports tracks whose entries are not near the images in time, so that most frames get nothing from them.
@@ -301,6 +322,7 @@ DecidedRecording decide(RecordingFacts facts, const std::filesystem::path& folde
   require_a_readable_image(recording);
   if (options.questions == Questions::kDepth) question_depth(recording, convention.has_value());
 
+  if (options.questions == Questions::kDepth) advise_on_unusable_poses(recording);
   report_tracks(recording);
   report_gap(recording);
   advise_on_rate(recording);

@@ -1,6 +1,7 @@
 // nominal_rig.cpp: published and measured intrinsics of Kinects, and the precedence of their sources.
 #include "app/sources/formats/nominal_rig.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "mapping/types/system/error.hpp"
@@ -81,8 +82,17 @@ CameraRig figures(NominalRig kind) {
   throw Error("nominal_rig: no such kind of recording");
 }
 
-
 }  // namespace
+
+Intrinsics phone_camera(ImageSize size) {
+  const double focal_px = 0.71 * std::max(size.width_px, size.height_px);
+  return {size.width_px,
+          size.height_px,
+          focal_px,
+          focal_px,
+          (size.width_px - 1) / 2.0,
+          (size.height_px - 1) / 2.0};
+}
 
 Intrinsics fitted_to(const Intrinsics& camera, ImageSize size) {
   const double factor = static_cast<double>(size.width_px) / camera.width_px;

@@ -97,6 +97,17 @@ TEST(NumberedImages, ColourThatCannotBeReadCostsOnlyColour) {
   EXPECT_TRUE(contains(said, "no colour image can be read, so depth is used without colour")) << said;
 }
 
+TEST(NumberedImages, MissingDepthIsCounted) {
+  const TemporaryFolder folder;
+  write_numbered(folder.path(), [](int i) { return Written{padded(i) + ".png", padded(i) + ".png"}; });
+  for (const int i : {3, 4}) fs::remove(folder.path() / "depth" / (padded(i) + ".png"));
+  ReadAll all;
+  const std::string said = decisions_about(
+      [&](const SourceOptions& options) { return open_folder(folder.path(), options); }, &all);
+  EXPECT_EQ(all.frames.size(), 10U);
+  EXPECT_TRUE(contains(said, "2 colour images have no depth image of the same number")) << said;
+}
+
 TEST(NumberedImages, FoldersInFoldersAreEntered) {
   const TemporaryFolder folder;
   fs::create_directories(folder.path() / "__MACOSX");
@@ -251,17 +262,28 @@ TEST(StrayScanner, DepthIsReadWithoutPosesAndVideo) {
   const TemporaryFolder folder;
   write_stray(folder.path());
   const auto whole = read_all(*open_folder(folder.path()));
+  // Without text: without the file.
   const auto with = [&](const char* file, const std::string& text, ReadAll& all) {
     const TemporaryFolder broken;
     fs::copy(folder.path(), broken.path(), fs::copy_options::recursive);
-    write_text(broken.path() / file, text);
-    return decisions_about([&](const SourceOptions& options) { return open_folder(broken.path(), options); }, &all);
+    fs::remove(broken.path() / file);
+    if (!text.empty()) write_text(broken.path() / file, text);
+    return decisions_about([&](const SourceOptions& options) { return open_folder(broken.path(), options); },
+                           &all);
   };
   ReadAll all;
   EXPECT_TRUE(contains(with("odometry.csv", "timestamp\n1, x, 3", all), "1 lines of odometry.csv"));
   ASSERT_EQ(all.frames.size(), whole.frames.size());
   EXPECT_FALSE(all.frames[0].T_world_camera);
   EXPECT_FALSE(all.frames[0].colour.empty());
+  EXPECT_TRUE(contains(with("odometry.csv", "", all), "odometry.csv is missing"));
+  ASSERT_EQ(all.frames.size(), whole.frames.size());
+  EXPECT_FALSE(all.frames[0].T_world_camera);
+  EXPECT_EQ(all.frames[0].depth_camera, whole.frames[0].depth_camera);
+  EXPECT_TRUE(contains(with("camera_matrix.csv", "", all), "that of an iPhone is assumed"));
+  EXPECT_TRUE(all.frames[0].T_world_camera->isApprox(*whole.frames[0].T_world_camera, 1e-12));
+  EXPECT_TRUE(
+      contains(with("depth/000007.png", "", all), "1 of 30 frames of odometry.csv have no depth image"));
   EXPECT_TRUE(contains(with("rgb.mp4", "nothing", all), "cannot be opened as a video"));
   ASSERT_EQ(all.frames.size(), whole.frames.size());
   EXPECT_TRUE(all.frames[0].colour.empty());

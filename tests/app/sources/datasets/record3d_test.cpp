@@ -245,6 +245,24 @@ TEST(Record3d, IsReadWithoutPosesAndStamps) {
   }
 }
 
+TEST(Record3d, IsReadWithoutDepthSizeAndCamera) {
+  const TemporaryFolder folder;
+  write_export(folder.path(), R"({"w":12,"h":16,"fps":60})");
+  fs::remove(folder.path() / "depth" / "1.exr");
+  write_text(folder.path() / "depth" / "0.exr", "cut");
+  test::ReadAll all;
+  const std::string said = test::decisions_about(
+      [&](const SourceOptions& options) { return open_folder(folder.path(), options); }, &all);
+  ASSERT_EQ(all.frames.size(), 1U) << said;
+  EXPECT_EQ(all.frames[0].depth_camera.width_px, kWidth);
+  EXPECT_EQ(all.frames[0].depth_camera.height_px, kHeight);
+  EXPECT_NEAR(all.frames[0].depth_camera.fx_px, 0.71 * kHeight, 1e-9);
+  EXPECT_TRUE(contains(said, "no camera is stated; that of an iPhone is assumed")) << said;
+  EXPECT_TRUE(contains(said, "1 colour image has no depth image of the same number")) << said;
+  for (int i = 0; i < 3; ++i) write_text(folder.path() / "depth" / (std::to_string(i) + ".exr"), "cut");
+  EXPECT_TRUE(contains(error_of([&] { (void)open_folder(folder.path()); }), "no depth image can be read"));
+}
+
 TEST(Record3d, ItsOwnFormIsNamed) {
   const TemporaryFolder folder;
   write_text(folder.path() / "scan.r3d", "PK");

@@ -480,6 +480,39 @@ TEST(Mutations, PosesOfTheFirstFramesAreNotShifted) {
   EXPECT_EQ(decide(facts, {}, asking()).pose_convention, PoseConvention{});
 }
 
+// Each part agrees with its own depth: no convention explains the step between them.
+TEST(Mutations, PosesWithAStepAreKept) {
+  RecordingFacts facts = simulated_facts("sim:table?frames=100&width=160&seed=4", true, DepthNoise{});
+  for (std::size_t i = 50; i < facts.frames.size(); ++i)
+    facts.frames[i].T_world_camera->pretranslate(Eigen::Vector3d(0.5, 0.0, 0.3));
+  const DecidedRecording recording = decide(facts, {}, asking());
+  EXPECT_EQ(recording.pose_convention, PoseConvention{});
+  EXPECT_TRUE(recording.poses_are_used);
+}
+
+TEST(Mutations, PosesOfWhichNoneCanBeUsedAreAdvisedOn) {
+  RecordingFacts facts = simulated_facts("sim:table?frames=40&width=160&seed=4", true, DepthNoise{});
+  for (StatedFrame& frame : facts.frames) {
+    frame.T_world_camera.reset();
+    frame.pose_fault = "is no rigid transform";
+  }
+  const auto is_advised = [](const RecordingFacts& stated) {
+    const auto decisions = decide(stated, {}, asking()).report->decisions();
+    return std::any_of(decisions.begin(), decisions.end(), [](const InputDecision& decision) {
+      return decision.topic == "poses" && decision.is_advice;
+    });
+  };
+  EXPECT_TRUE(is_advised(facts));
+  facts.read_pose = [](std::size_t, double) { return StatedPose{.fault = "has 0 numbers"}; };
+  EXPECT_TRUE(is_advised(facts));
+  facts.read_pose = [](std::size_t frame, double) {
+    return frame == 0 ? StatedPose{.T_world_camera = Eigen::Isometry3d::Identity()}
+                      : StatedPose{.fault = "has 0 numbers"};
+  };
+  for (StatedFrame& frame : facts.frames) frame.pose_fault.clear();
+  EXPECT_FALSE(is_advised(facts));
+}
+
 TEST(Mutations, AValueThatMeansNothingMeasuredIsNamed) {
   RecordingFacts facts = simulated_facts("sim:table?frames=40&width=160&seed=4", true, DepthNoise{});
   EXPECT_FALSE(says(decide(facts, {}, asking()), "many depths are exactly"));
