@@ -55,6 +55,7 @@ void close_cracks(MeasuredView& view) {
         if (!is_one_surface(a_m, b_m)) continue;
         z_m = 0.5F * (a_m + b_m);
         view.is_dynamic.pixels[i] = view.is_dynamic.pixels[a] & view.is_dynamic.pixels[b];
+        view.is_revealed.pixels[i] = view.is_revealed.pixels[a] & view.is_revealed.pixels[b];
       }
     }
   }
@@ -130,7 +131,6 @@ float depth_in_gap(std::span<const ColourSample> samples, int x, int y, const Rg
 void view_measured(const MeasuredFrame& frame, const Eigen::Isometry3d& T_view_depth,
                    const Intrinsics& view_camera, const PixelRect& rect, MeasuredView& view) {
   const DepthImage& depth_m = frame.depth_m;
-  const MaskImage& dynamic_mask = frame.dynamic_mask;
   const Intrinsics& depth_camera = frame.camera;
   view.rect = rect;
   const auto fit = [&](auto& image) {
@@ -139,11 +139,12 @@ void view_measured(const MeasuredFrame& frame, const Eigen::Isometry3d& T_view_d
   };
   fit(view.depth_m);
   fit(view.is_dynamic);
+  fit(view.is_revealed);
   fit(view.is_decided);
   for (int y = rect.y; y < rect.y + rect.height; ++y) {
     std::fill_n(view.depth_m.row(y) + rect.x, rect.width, 0.0F);
-    std::fill_n(view.is_dynamic.row(y) + rect.x, rect.width, std::uint8_t{0});
-    std::fill_n(view.is_decided.row(y) + rect.x, rect.width, std::uint8_t{0});
+    for (MaskImage* mask : {&view.is_dynamic, &view.is_revealed, &view.is_decided})
+      std::fill_n(mask->row(y) + rect.x, rect.width, std::uint8_t{0});
   }
   const PixelRect from = pixels_that_reach(rect, depth_camera, T_view_depth, view_camera);
   const Eigen::Isometry3f T = T_view_depth.cast<float>();
@@ -157,8 +158,13 @@ void view_measured(const MeasuredFrame& frame, const Eigen::Isometry3d& T_view_d
   const float low_y = static_cast<float>(rect.y) - margin, high_y = static_cast<float>(y_end) + margin;
   for (int v = from.y; v < from.y + from.height; ++v) {
     const float* row_m = depth_m.row(v);
-    const std::uint8_t* mask =
-        dynamic_mask.empty() ? nullptr : dynamic_mask.row(v * dynamic_mask.height / depth_m.height);
+    const auto row_of = [&](const MaskImage& mask) {
+      return mask.empty() ? nullptr : mask.row(v * mask.height / depth_m.height);
+    };
+    const auto value_at = [&](const MaskImage& mask, const std::uint8_t* row, int u) {
+      return row == nullptr ? std::uint8_t{0} : row[u * mask.width / depth_m.width];
+    };
+    const std::uint8_t *dynamic = row_of(frame.dynamic_mask), *revealed = row_of(frame.revealed_mask);
     const Eigen::Vector3f ray_at_column_0 =
         T.linear() * back_project(depth_camera, 0.0, v, 1.0).cast<float>();
     for (int u = from.x; u < from.x + from.width; ++u) {
@@ -169,12 +175,14 @@ void view_measured(const MeasuredFrame& frame, const Eigen::Isometry3d& T_view_d
       const float inverse = 1.0F / p.z();
       const float x = p.x() * inverse * fx + cx, y = p.y() * inverse * fy + cy;
       if (!(x > low_x && y > low_y && x < high_x && y < high_y)) continue;
-      const std::uint8_t is_dynamic = mask != nullptr ? mask[u * dynamic_mask.width / depth_m.width] : 0;
+      const std::uint8_t is_dynamic = value_at(frame.dynamic_mask, dynamic, u),
+                         is_revealed = value_at(frame.revealed_mask, revealed, u);
       const auto set = [&](int xx, int yy) {
         const std::size_t i = view.depth_m.index(xx, yy);
         if (view.depth_m.pixels[i] > 0.0F && view.depth_m.pixels[i] <= p.z()) return;
         view.depth_m.pixels[i] = p.z();
         view.is_dynamic.pixels[i] = is_dynamic;
+        view.is_revealed.pixels[i] = is_revealed;
       };
       const float half = 0.5F * per_pixel * z_m * inverse;
       if (half <= 0.5F) {
@@ -201,12 +209,30 @@ void add_measured(const MeasuredView& view, const DepthNoise& noise, DepthImage&
     return z_m > 0.0F && z_m < model_m - kLeastNearer_m &&
            z_m < model_m - kSigmas * depth_sigma_m(noise, model_m);
   };
+  // Depth measured behind a part of the room that is gone, at a pixel or at most of the measured ones around
+  // it.
+  const auto revealed_m = [&](int x, int y) {
+    if (view.depth_m.at(x, y) > 0.0F) return view.is_revealed.at(x, y) != 0 ? view.depth_m.at(x, y) : 0.0F;
+    int revealed = 0, measured = 0;
+    float sum_m = 0.0F;
+    for (int v = std::max(y - 2, rect.y); v <= std::min(y + 2, y_end - 1); ++v)
+      for (int u = std::max(x - 2, rect.x); u <= std::min(x + 2, x_end - 1); ++u) {
+        measured += view.depth_m.at(u, v) > 0.0F ? 1 : 0;
+        if (view.is_revealed.at(u, v) == 0) continue;
+        ++revealed;
+        sum_m += view.depth_m.at(u, v);
+      }
+    return revealed >= kFewest && 2 * revealed > measured ? sum_m / static_cast<float>(revealed) : 0.0F;
+  };
   std::vector<std::size_t> nearer, without_model;
+  std::vector<std::pair<std::size_t, float>> behind;
   for (int y = rect.y; y < y_end; ++y) {
     const float* seen_m = view.depth_m.row(y);
     const float* model_m = real_depth_m.row(y);
     for (int x = rect.x; x < x_end; ++x) {
       if (!(model_m[x] > 0.0F) && seen_m[x] > 0.0F) without_model.push_back(view.depth_m.index(x, y));
+      if (const float z_m = revealed_m(x, y); is_nearer(model_m[x], z_m))
+        behind.emplace_back(view.depth_m.index(x, y), z_m);
       if (!is_nearer(seen_m[x], model_m[x])) continue;
       int supported = 0;
       for (int v = std::max(y - 2, rect.y); v <= std::min(y + 2, y_end - 1); ++v)
@@ -221,6 +247,7 @@ void add_measured(const MeasuredView& view, const DepthNoise& noise, DepthImage&
   }
   for (const std::vector<std::size_t>* pixels : {&nearer, &without_model})
     for (const std::size_t i : *pixels) real_depth_m.pixels[i] = view.depth_m.pixels[i];
+  for (const auto& [i, z_m] : behind) real_depth_m.pixels[i] = z_m;
 }
 
 void bridge_gaps(const ColourImage& camera_image, MeasuredView& view, DepthImage& real_depth_m) {

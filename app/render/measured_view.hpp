@@ -16,6 +16,7 @@ struct MeasuredView {
   PixelRect rect;
   DepthImage depth_m;    ///< along that camera's optical axis; 0: nothing was measured there
   MaskImage is_dynamic;  ///< not 0: the measured surface is not the static room
+  MaskImage is_revealed;  ///< not 0: the measured surface was behind a part of the static room that is gone
   /// Set by bridge_gaps(). Not 0: a measured dynamic pixel, or an unmeasured one whose surface was decided by
   /// colour.
   MaskImage is_decided;
@@ -30,6 +31,9 @@ struct MeasuredFrame {
   const MaskImage&
       dynamic_mask;          ///< not 0: dynamic; of any size, scaled to that of depth_m. Empty: nothing is
   const Intrinsics& camera;  ///< of the depth image
+  /// Not 0: measured behind a part of the static room that is gone; of any size, as dynamic_mask. Empty:
+  /// nothing is gone.
+  const MaskImage& revealed_mask;
 };
 
 /// Projects measured depth into another camera. Each measured pixel covers as much of the view as its share
@@ -42,7 +46,8 @@ void view_measured(const MeasuredFrame& frame, const Eigen::Isometry3d& T_view_d
 /// Adds what was measured to the depth of the modelled surfaces, which are smoother and complete. A
 /// measurement counts where there is no model, and where it is nearer than the model by more than its error
 /// and several of its neighbours on the same surface are nearer, too, or dynamic. So a surface hides what is
-/// behind it, whether or not it belongs to any model.
+/// behind it, whether or not it belongs to any model. A measurement also counts where it is revealed: a part
+/// of the room that is gone hides nothing.
 /// @param noise   of the sensor
 /// @param[in,out] real_depth_m  depth of the modelled surfaces in the view, with its size, 0: none
 void add_measured(const MeasuredView& view, const DepthNoise& noise, DepthImage& real_depth_m);

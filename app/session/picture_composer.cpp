@@ -41,6 +41,17 @@ PixelRect without_depth(const DepthImage& depth_m, const PixelRect& rect) {
   return gaps;
 }
 
+/// Marks the pixels that are seen past a part of the room that is gone. Empties the mask if there are none.
+void mark_revealed(const FrameForeground& foreground, MaskImage& revealed_mask) {
+  const LabelImage& labels = foreground.labels;
+  revealed_mask.resize(0, 0);
+  if (foreground.counts.revealed == 0) return;
+  revealed_mask.resize(labels.width, labels.height);
+  std::transform(
+      labels.pixels.begin(), labels.pixels.end(), revealed_mask.pixels.begin(),
+      [](PixelLabel label) { return label == PixelLabel::kRevealed ? std::uint8_t{255} : std::uint8_t{0}; });
+}
+
 }  // namespace
 
 PictureComposer::PictureComposer(GlContext& context, FrameScene& scene,
@@ -186,14 +197,18 @@ void PictureComposer::compose(const Frame& frame, const Eigen::Isometry3d& T_wor
   const PixelRect rect = pixels_to_compose(casters, camera, T_world_view, layer_, config_.picture.occlusion);
   if (rect.width > 0 && rect.height > 0)
     scene_.render_surfaces(camera, T_world_view, rect, buffers_.real_depth_m);
-  // Without anything dynamic, measured depth matters only where the map has none.
-  const bool has_moved = scene_.foreground().counts.moved > 0;
+  // Where nothing moved or is gone, measured depth matters only where the map has none.
+  const FrameForeground& foreground = scene_.foreground();
+  const bool has_moved = foreground.counts.moved > 0;
+  mark_revealed(foreground, buffers_.revealed_mask);
   const bool bridges = has_moved && config_.picture.bridge_gaps;
-  const PixelRect measured = has_moved ? rect : without_depth(buffers_.real_depth_m, rect);
+  const PixelRect measured =
+      has_moved || !buffers_.revealed_mask.empty() ? rect : without_depth(buffers_.real_depth_m, rect);
   if (measured.width > 0) {
     view_measured({.depth_m = frame.depth_m,
-                   .dynamic_mask = scene_.foreground().dynamic_mask,
-                   .camera = frame.depth_camera},
+                   .dynamic_mask = foreground.dynamic_mask,
+                   .camera = frame.depth_camera,
+                   .revealed_mask = buffers_.revealed_mask},
                   T_world_view.inverse() * T_world_camera, camera, measured, buffers_.measured);
     add_measured(buffers_.measured, frame.depth_noise, buffers_.real_depth_m);
     if (bridges) bridge_gaps(buffers_.background, buffers_.measured, buffers_.real_depth_m);

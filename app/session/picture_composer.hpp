@@ -80,6 +80,7 @@ class PictureComposer {
   struct Buffers {
     /// Depth of the real surfaces in the picture's view, in the pixels around objects.
     DepthImage real_depth_m;
+    MaskImage revealed_mask;            ///< see MeasuredFrame
     MeasuredView measured;              ///< what the frame measured, in the picture's view
     std::vector<HatchedPatch> patches;  ///< hatched areas under objects that rest on unknown space
     ObjectReaches reaches;              ///< in the order of the objects
