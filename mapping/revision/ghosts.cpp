@@ -37,6 +37,8 @@ void require_valid(const GhostConfig& c) {
   require(c.min_through_share >= 0.0F && c.min_through_share <= 1.0F, "min_through_share",
           c.min_through_share, "in 0..1");
   require(c.min_extent_m >= 0.0F && std::isfinite(c.min_extent_m), "min_extent_m", c.min_extent_m, ">= 0");
+  require(c.min_extent_mostly_through_m >= 0.0F && std::isfinite(c.min_extent_mostly_through_m),
+          "min_extent_mostly_through_m", c.min_extent_mostly_through_m, ">= 0");
   require(c.max_looks >= 1 && c.max_looks <= 60'000, "max_looks", c.max_looks, "in 1..60000");
 }
 
@@ -523,10 +525,19 @@ std::vector<GhostVotes::Fate> GhostVotes::fates() const {
   });
   const std::vector<VotedVoxel> absent = find_absent(may_be_gone, absence_, min_voxels);
   std::vector<VotedVoxel> ghosts, sure;
-  const std::vector<std::size_t> together = voxels_together(seen_through);
-  for (std::size_t i = 0; i < seen_through.size(); ++i) {
+  const auto mostly_through = those([this](const Votes& votes, const AbsenceVotes&) {
+    return votes.through >= config_.min_through && votes.through > votes.seen;
+  });
+  const double min_mostly_through = voxels_of(static_cast<double>(config_.min_extent_mostly_through_m));
+  const std::vector<std::size_t> together = voxels_together(seen_through),
+                                 mostly_together = voxels_together(mostly_through);
+  for (std::size_t i = 0, k = 0; i < seen_through.size(); ++i) {
     const auto size = static_cast<double>(together[i]);
-    if (size >= min_voxels) ghosts.push_back(seen_through[i]);
+    // Both lists are in one order, and the second is a part of the first.
+    const bool is_mostly = k < mostly_through.size() && mostly_through[k].voxel == seen_through[i].voxel;
+    const double mostly_size = is_mostly ? static_cast<double>(mostly_together[k++]) : 0.0;
+    if (size >= min_voxels || (is_mostly && mostly_size >= min_mostly_through))
+      ghosts.push_back(seen_through[i]);
     if (size >= voxels_of(kSureExtent_m)) sure.push_back(seen_through[i]);
   }
 

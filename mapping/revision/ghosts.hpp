@@ -40,6 +40,9 @@ struct GhostConfig {
   /// through is a ghost only if it has at least as many samples as the square. The square has two samples per
   /// voxel of area. Smaller components are tracking errors at the edges of static objects.
   float min_extent_m = 0.15F;
+  /// The same for samples that more frames see through than measure. Tracking errors at static edges do not
+  /// reach that share; small things that moved do, such as a part of the robot that carries the camera.
+  float min_extent_mostly_through_m = 0.03F;
   int max_looks = 170;  ///< max number of frames used, evenly spaced over the recording
 };
 

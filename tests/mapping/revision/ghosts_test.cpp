@@ -331,6 +331,21 @@ TEST(Ghosts, AThinPoleStaysThoughThePosesAreACentimetreOff) {
   EXPECT_GE(occupied, 50);  // 1.2 m of it are in view: 60 voxels
 }
 
+// 8 cm wide: smaller than what errors of tracking leave at edges.
+TEST(Ghosts, ASmallThingGoesIfMoreFramesSeeThroughItThanMeasureIt) {
+  const auto ghosts_of = [](int frames_with_box) {
+    return scan(FrameList(record(40,
+                                 [=](int i) {
+                                   return i < frames_with_box
+                                              ? before_wall({-0.04, 1.2, -0.04}, {0.04, 1.28, 0.04})
+                                              : wall();
+                                 })))
+        .ghosts;
+  };
+  EXPECT_GT(ghosts_of(12), 10);
+  EXPECT_EQ(ghosts_of(30), 0);
+}
+
 // The centre of a coarse voxel is farther in front of the wall than noise or pose error explains.
 TEST(Ghosts, AWallIsNoneHoweverCoarseTheCells) {
   const auto frames = record(20, [](int) { return wall(); });
