@@ -11,68 +11,53 @@
 #include "mapping/localization/keyframe_database_file.hpp"
 #include "mapping/odometry/odometry_checkpoint.hpp"
 #include "mapping/storage/binary_file.hpp"
-#include "mapping/types/serialize.hpp"
 
 namespace roomradar {
 
 namespace fs = std::filesystem;
 
 template <typename Archive>
-void serialize(Archive& archive, PrescanCounts& counts) {
-  for (std::int64_t* count :
+void serialize(Archive& archive, Ref<Archive, PrescanCounts> counts) {
+  for (auto* const count :
        {&counts.frames_read, &counts.frames_skipped, &counts.frames_tracked, &counts.frames_fused,
         &counts.frames_lost, &counts.keyframes, &counts.loops_found, &counts.restarts, &counts.ghost_voxels,
         &counts.recorded_used, &counts.recorded_contradicted}) {
-    serialize(archive, *count);
+    archive(*count);
     if constexpr (Archive::kReads) {
       if (*count < 0) archive.fail("is damaged: a count is negative");
     }
   }
-  serialize(archive, counts.timing);
-  serialize(archive, counts.recorded_sigma_m);
-  serialize(archive, counts.stopped_for_memory);
-  serialize(archive, counts.last_fault);
+  archive(counts.timing, counts.recorded_sigma_m, counts.stopped_for_memory, counts.last_fault);
 }
 
 template <typename Archive>
-void serialize(Archive& archive, TrackedFrame& frame) {
-  serialize(archive, frame.frame_index);
-  serialize(archive, frame.stamp_s);
-  serialize(archive, frame.T_world_camera);
+void serialize(Archive& archive, Ref<Archive, TrackedFrame> frame) {
+  archive(frame.frame_index, frame.stamp_s, frame.T_world_camera);
   serialize(archive, frame.status, TrackStatus::kDiverged);
-  serialize(archive, frame.part);
-  serialize(archive, frame.trusted);
+  archive(frame.part, frame.trusted);
 }
 
 template <typename Archive>
-void serialize(Archive& archive, ScanPart& part) {
-  serialize(archive, part.first);
-  serialize(archive, part.last);
-  serialize(archive, part.frames);
-  serialize(archive, part.is_joined);
+void serialize(Archive& archive, Ref<Archive, ScanPart> part) {
+  archive(part.first, part.last, part.frames, part.is_joined);
 }
 
 template <typename Archive>
-void serialize(Archive& archive, UpDirection& up) {
+void serialize(Archive& archive, Ref<Archive, UpDirection> up) {
   serialize(archive, up.source, UpSource::kPlane);
-  serialize(archive, up.up_world);
-  serialize(archive, up.support);
+  archive(up.up_world, up.support);
 }
 
 template <typename Archive>
-void serialize(Archive& archive, FusedFrame& frame) {
-  serialize(archive, frame.position);
-  serialize(archive, frame.frame_index);
-  serialize(archive, frame.depth_camera);
-  serialize(archive, frame.T_world_camera);
+void serialize(Archive& archive, Ref<Archive, FusedFrame> frame) {
+  archive(frame.position, frame.frame_index, frame.depth_camera, frame.T_world_camera);
 }
 
 template <typename Archive>
-void serialize(Archive& archive, GhostRevision& revision) {
-  GhostVotes::Verdicts& verdicts = revision.verdicts;
-  for (std::vector<VoxelIndex>* voxels :
-       {&verdicts.ghosts, &verdicts.absent, &verdicts.still, &verdicts.unseen}) {
-    serialize(archive, *voxels);
+void serialize(Archive& archive, Ref<Archive, GhostRevision> revision) {
+  auto& verdicts = revision.verdicts;
+  for (auto* const voxels : {&verdicts.ghosts, &verdicts.absent, &verdicts.still, &verdicts.unseen}) {
+    archive(*voxels);
     if constexpr (Archive::kReads) {
       static constexpr int kReach = 32768;  // range of the octree's 16-bit keys
       const auto is_in_reach = [](const VoxelIndex& v) {
@@ -82,7 +67,7 @@ void serialize(Archive& archive, GhostRevision& revision) {
         archive.fail("is damaged: a voxel is past the octree's reach");
     }
   }
-  serialize(archive, revision.next);
+  archive(revision.next);
 }
 
 namespace {
@@ -94,60 +79,33 @@ constexpr const char* kPlaces = "places.bin";
 constexpr std::string_view kMagic = "RRPRSCAN";
 constexpr std::uint32_t kVersion = 7;
 
-template <typename Archive>
-void serialize_state(Archive& archive, TrackingPass& pass) {
-  serialize(archive, pass.counts);
-  auto parts = static_cast<std::uint64_t>(pass.up.size());
-  serialize(archive, parts);
-  if constexpr (Archive::kReads) {
-    constexpr std::uint64_t kMost = 1'000'000;
-    if (parts == 0 || parts > kMost) archive.fail("is damaged: its number of parts");
-    pass.up.resize(static_cast<std::size_t>(parts));
-  }
-  for (UpEstimator& up : pass.up) up.serialize_fields(archive);
-  serialize(archive, pass.recorded);
-}
-
-template <typename Archive>
-void serialize_state(Archive& archive, FusionPass& pass) {
-  serialize(archive, pass.counts);
-  serialize(archive, pass.found.frames);
-  serialize(archive, pass.found.up);
-  serialize(archive, pass.found.recorded);
-  serialize(archive, pass.found.parts);
-  serialize(archive, pass.T_world_found);
-  serialize(archive, pass.frames_read);
-  serialize(archive, pass.fused);
-  serialize(archive, pass.stopped_for_memory);
-  serialize(archive, pass.revision);
-  serialize(archive, pass.ghost_voxels);
-}
-
-template <typename Pass>
-void write_fields(Pass& pass, const fs::path& path) {
-  ByteWriter archive;
-  serialize_state(archive, pass);
-  write_binary(path, kMagic, kVersion, archive.bytes());
-}
-
-template <typename Pass>
-void read_fields(const fs::path& path, Pass& pass) {
-  const std::string bytes = read_binary(path, kMagic, kVersion);
-  ByteReader archive(bytes, path.string());
-  serialize_state(archive, pass);
-  archive.require_end();
-}
-
 }  // namespace
 
-void write_state(TrackingPass& pass, const fs::path& into, const fs::path& previous) {
-  write_fields(pass, into / kState);
+/// All but the odometry.
+template <typename Archive>
+void serialize(Archive& archive, Ref<Archive, TrackingPass> pass) {
+  archive(pass.counts, pass.up);
+  if constexpr (Archive::kReads)
+    if (pass.up.empty()) archive.fail("is damaged: its number of parts");
+  archive(pass.recorded);
+}
+
+/// All but the keyframe database and the octree.
+template <typename Archive>
+void serialize(Archive& archive, Ref<Archive, FusionPass> pass) {
+  archive(pass.counts, pass.found.frames, pass.found.up, pass.found.recorded, pass.found.parts,
+          pass.T_world_found, pass.frames_read, pass.fused, pass.stopped_for_memory, pass.revision,
+          pass.ghost_voxels);
+}
+
+void write_state(const TrackingPass& pass, const fs::path& into, const fs::path& previous) {
+  save_binary(into / kState, kMagic, kVersion, pass);
   fs::create_directory(into / kOdometry);
   save_odometry(pass.odometry, into / kOdometry, previous.empty() ? fs::path{} : previous / kOdometry);
 }
 
-void write_state(FusionPass& pass, const fs::path& into, const fs::path& previous) {
-  write_fields(pass, into / kState);
+void write_state(const FusionPass& pass, const fs::path& into, const fs::path& previous) {
+  save_binary(into / kState, kMagic, kVersion, pass);
   // The keyframe database does not change in this pass.
   if (previous.empty() || !fs::exists(previous / kOctree) || !carry_over(previous / kPlaces, into / kPlaces))
     write_keyframe_database(pass.found.keyframe_database, into / kPlaces);
@@ -156,14 +114,14 @@ void write_state(FusionPass& pass, const fs::path& into, const fs::path& previou
 
 TrackingPass read_tracking_pass(const Checkpoint& checkpoint, const OdometryConfig& config) {
   TrackingPass pass(config);
-  read_fields(checkpoint.folder / kState, pass);
+  load_binary(checkpoint.folder / kState, kMagic, kVersion, pass);
   pass.odometry = load_odometry(checkpoint.folder / kOdometry, config);
   return pass;
 }
 
 FusionPass read_fusing_pass(const Checkpoint& checkpoint) {
   FusionPass pass;
-  read_fields(checkpoint.folder / kState, pass);
+  load_binary(checkpoint.folder / kState, kMagic, kVersion, pass);
   pass.found.keyframe_database = read_keyframe_database(checkpoint.folder / kPlaces);
   pass.octree = StaticMap::read(checkpoint.folder / kOctree);
   return pass;

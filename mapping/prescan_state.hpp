@@ -54,11 +54,11 @@ inline constexpr const char* kTrackingStage = "track";
 inline constexpr const char* kTrackingAgainStage = "track again";  ///< after a restart; shown, not stored
 inline constexpr const char* kFusingStage = "fuse";
 
-/// Writes the state's files into a checkpoint's folder; see Checkpoints::WriteFiles. Does not change the
-/// state.
-void write_state(TrackingPass& pass, const std::filesystem::path& into,
+/// Writes the state's files into a checkpoint's folder; see Checkpoints::WriteFiles.
+void write_state(const TrackingPass& pass, const std::filesystem::path& into,
                  const std::filesystem::path& previous);
-void write_state(FusionPass& pass, const std::filesystem::path& into, const std::filesystem::path& previous);
+void write_state(const FusionPass& pass, const std::filesystem::path& into,
+                 const std::filesystem::path& previous);
 
 /// Reads and validates a checkpoint of the matching stage. A resumed second pass gives exactly the result of
 /// an uninterrupted one. A resumed first pass differs by the rounding of stored keyframe views (about 1 mm).

@@ -23,7 +23,6 @@
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/prescan_passes.hpp"
 #include "mapping/storage/binary_file.hpp"
-#include "mapping/types/serialize.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/make_folder.hpp"
@@ -211,18 +210,12 @@ int run(const TileStep& step) {
 }
 
 void save_placed_keyframes(const std::vector<Eigen::Isometry3d>& T_building_keyframe, const fs::path& path) {
-  ByteWriter out;
-  std::vector<Eigen::Isometry3d> copy = T_building_keyframe;
-  serialize(out, copy);
-  write_binary(path, kPlacedMagic, kPlacedVersion, out.bytes());
+  save_binary(path, kPlacedMagic, kPlacedVersion, T_building_keyframe);
 }
 
 std::vector<Eigen::Isometry3d> load_placed_keyframes(const fs::path& path) {
-  const std::string bytes = read_binary(path, kPlacedMagic, kPlacedVersion);
-  ByteReader in(bytes, path.string());
   std::vector<Eigen::Isometry3d> poses;
-  serialize(in, poses);
-  in.require_end();
+  load_binary(path, kPlacedMagic, kPlacedVersion, poses);
   return poses;
 }
 

@@ -294,10 +294,9 @@ constexpr std::string_view kCopyHead = "roomradar model 2\n";
 constexpr std::string_view kCopyHead1 = "roomradar model 1\n";  ///< without Texture::is_pixelated
 constexpr std::uintmax_t kMaxCopyBytes = std::uintmax_t{1} << 30U;
 
-template <typename Archive, typename Pixel>
-void serialize_image(Archive& archive, Image<Pixel>& image) {
-  serialize(archive, image.width);
-  serialize(archive, image.height);
+template <typename Archive, typename Picture>
+void serialize_image(Archive& archive, Picture& image) {
+  archive(image.width, image.height);
   serialize_items(archive, image.pixels);
   if constexpr (Archive::kReads) {
     const bool is_whole =
@@ -311,22 +310,22 @@ void serialize_image(Archive& archive, Image<Pixel>& image) {
 }  // namespace
 
 template <typename Archive>
-void serialize(Archive& archive, Texture& texture) {
+void serialize(Archive& archive, Ref<Archive, Texture> texture) {
   serialize_image(archive, texture.colour);
   serialize_image(archive, texture.opacity);
-  serialize(archive, texture.least_opacity);
+  archive(texture.least_opacity);
   serialize(archive, texture.wrap_u, TextureWrap::kClamp);
   serialize(archive, texture.wrap_v, TextureWrap::kClamp);
 }
 
 template <typename Archive>
-void serialize(Archive& archive, Model& model, bool has_filters = true) {
-  serialize(archive, model.mesh);
+void serialize(Archive& archive, Ref<Archive, Model> model, bool has_filters = true) {
+  archive(model.mesh);
   serialize_items(archive, model.texture_points);
   serialize_items(archive, model.parts);
-  serialize(archive, model.textures);
+  archive(model.textures);
   if (!has_filters) return;
-  for (Texture& texture : model.textures) serialize(archive, texture.is_pixelated);
+  for (auto& texture : model.textures) archive(texture.is_pixelated);
 }
 
 namespace {
@@ -406,15 +405,13 @@ Model read_sandboxed(const std::filesystem::path& path) {
         Model model =
             extension == ".glb" || extension == ".gltf" ? read_gltf_model(path) : read_by_assimp(path);
         ByteWriter writer;
-        serialize(writer, model);
-        serialize(writer, model.notes);
-        return writer.bytes();
+        writer(model, model.notes);
+        return std::move(writer.bytes);
       },
       path.string() + ": cannot be read; is it damaged?", most_s, max_bytes);
   ByteReader reader(answer, path.string());
   Model model;
-  serialize(reader, model);
-  serialize(reader, model.notes);
+  reader(model, model.notes);
   reader.require_end();
   return model;
 }
@@ -456,11 +453,10 @@ Model read_model(const std::filesystem::path& path, std::optional<UpAxis> up, Mo
 }
 
 void write_model_copy(const Model& model, const std::filesystem::path& path) {
-  Model copy = model;  // serialize() takes what it reads and what it writes alike
   ByteWriter writer;
   writer.raw(kCopyHead.data(), kCopyHead.size());
-  serialize(writer, copy);
-  write_bytes(path, writer.bytes());
+  writer(model);
+  write_bytes(path, writer.bytes);
 }
 
 }  // namespace roomradar

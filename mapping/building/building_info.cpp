@@ -167,26 +167,21 @@ void write_building(const BuildingInfo& info, const fs::path& folder) {
 }
 
 void write_tile_mesh(const Mesh& mesh, const fs::path& path) {
-  ByteWriter out;
-  Mesh copy = mesh;
-  serialize(out, copy);
-  write_binary(path, kMeshMagic, kMeshVersion, out.bytes());
+  save_binary(path, kMeshMagic, kMeshVersion, mesh);
 }
 
 Mesh read_tile_mesh(const fs::path& path) {
-  const std::string bytes = read_binary(path, kMeshMagic, kMeshVersion);
-  ByteReader in(bytes, path.string());
   Mesh mesh;
-  serialize(in, mesh);
-  in.require_end();
+  load_binary(path, kMeshMagic, kMeshVersion, mesh);
+  const auto fail = [&](const char* fault) { throw Error(path.string() + ": is damaged: " + fault); };
   const auto is_one_each = [&](std::size_t count) { return count == 0 || count == mesh.vertices.size(); };
   if (!mesh.origin.allFinite() || !is_one_each(mesh.normals.size()) || !is_one_each(mesh.colours.size()))
-    in.fail("is damaged: normals, colours or origin are not those of a mesh");
+    fail("normals, colours or origin are not those of a mesh");
   for (const Triangle& t : mesh.triangles)
     for (const std::uint32_t v : t)
-      if (v >= mesh.vertices.size()) in.fail("is damaged: a triangle names a vertex that is not there");
+      if (v >= mesh.vertices.size()) fail("a triangle names a vertex that is not there");
   for (const Eigen::Vector3f& v : mesh.vertices)
-    if (!v.allFinite()) in.fail("is damaged: a vertex is not a number");
+    if (!v.allFinite()) fail("a vertex is not a number");
   return mesh;
 }
 

@@ -6,9 +6,8 @@
 #include <string>
 
 #include "mapping/localization/feature_index.hpp"
-#include "mapping/mesh/serialize_mesh.hpp"
 #include "mapping/storage/binary_file.hpp"
-#include "mapping/types/serialize.hpp"
+#include "mapping/types/system/error.hpp"
 
 namespace roomradar {
 namespace {
@@ -21,9 +20,9 @@ constexpr std::uint32_t kSimilarityVersion = 1;
 }  // namespace
 
 template <typename Archive>
-static void serialize(Archive& archive, KeyframeFeatures& features) {
-  serialize(archive, features.count);
-  for (std::vector<std::uint32_t>& hashes : features.hashes) {
+static void serialize(Archive& archive, Ref<Archive, KeyframeFeatures> features) {
+  archive(features.count);
+  for (auto& hashes : features.hashes) {
     serialize_items(archive, hashes);
     if constexpr (Archive::kReads)
       if (hashes.size() > features.count || (!hashes.empty() && hashes.back() >> kFeatureHashBits != 0) ||
@@ -33,56 +32,41 @@ static void serialize(Archive& archive, KeyframeFeatures& features) {
 }
 
 template <typename Archive>
-static void serialize(Archive& archive, SimilarSubmap& similar) {
-  serialize(archive, similar.submap);
-  serialize(archive, similar.collisions);
+static void serialize(Archive& archive, Ref<Archive, SimilarSubmap> similar) {
+  archive(similar.submap, similar.collisions);
 }
 
 template <typename Archive>
-static void serialize(Archive& archive, KeyframeSimilarity& keyframe) {
-  serialize(archive, keyframe.features);
-  serialize(archive, keyframe.others);
+static void serialize(Archive& archive, Ref<Archive, KeyframeSimilarity> keyframe) {
+  archive(keyframe.features, keyframe.others);
 }
 
 void save_features(const SubmapFeatures& features, const std::filesystem::path& path) {
-  ByteWriter out;
-  SubmapFeatures copy = features;
-  serialize(out, copy.keyframes);
-  write_binary(path, kFeaturesMagic, kFeaturesVersion, out.bytes());
+  save_binary(path, kFeaturesMagic, kFeaturesVersion, features.keyframes);
 }
 
 SubmapFeatures load_features(const std::filesystem::path& path) {
-  const std::string bytes = read_binary(path, kFeaturesMagic, kFeaturesVersion);
-  ByteReader in(bytes, path.string());
   SubmapFeatures features;
-  serialize(in, features.keyframes);
-  in.require_end();
+  load_binary(path, kFeaturesMagic, kFeaturesVersion, features.keyframes);
   return features;
 }
 
 void save_similarity(const GroupSimilarity& similarity, const std::filesystem::path& path) {
-  ByteWriter out;
-  GroupSimilarity copy = similarity;
-  serialize(out, copy.a);
-  serialize(out, copy.b);
-  write_binary(path, kSimilarityMagic, kSimilarityVersion, out.bytes());
+  save_binary(path, kSimilarityMagic, kSimilarityVersion, similarity.a, similarity.b);
 }
 
 GroupSimilarity load_similarity(const std::filesystem::path& path, std::size_t submaps_a,
                                 std::size_t submaps_b) {
-  const std::string bytes = read_binary(path, kSimilarityMagic, kSimilarityVersion);
-  ByteReader in(bytes, path.string());
   GroupSimilarity similarity;
-  serialize(in, similarity.a);
-  serialize(in, similarity.b);
-  in.require_end();
-  const auto require_submaps_below = [&in](const std::vector<SubmapSimilarity>& side, std::size_t submaps) {
+  load_binary(path, kSimilarityMagic, kSimilarityVersion, similarity.a, similarity.b);
+  const auto require_submaps_below = [&path](const std::vector<SubmapSimilarity>& side, std::size_t submaps) {
     for (const SubmapSimilarity& submap : side)
       for (const KeyframeSimilarity& keyframe : submap)
         for (const SimilarSubmap& other : keyframe.others)
-          if (other.submap >= submaps) in.fail("is damaged: no such recording");
+          if (other.submap >= submaps) throw Error(path.string() + ": is damaged: no such recording");
   };
-  if (similarity.a.size() != submaps_a || similarity.b.size() != submaps_b) in.fail("is of other recordings");
+  if (similarity.a.size() != submaps_a || similarity.b.size() != submaps_b)
+    throw Error(path.string() + ": is of other recordings");
   require_submaps_below(similarity.a, submaps_b == 0 ? submaps_a : submaps_b);
   require_submaps_below(similarity.b, submaps_a);
   return similarity;

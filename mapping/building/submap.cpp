@@ -6,7 +6,6 @@
 
 #include "mapping/localization/keyframe_database_file.hpp"
 #include "mapping/storage/binary_file.hpp"
-#include "mapping/types/serialize.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
@@ -17,38 +16,23 @@ constexpr std::uint32_t kSubmapVersion = 1;
 constexpr const char* kSubmapFile = "submap.bin";
 constexpr const char* kKeyframesFile = "keyframes.bin";
 
-template <typename Archive>
-void serialize_poses(Archive& archive, std::vector<TimedPose>& poses) {
-  std::uint64_t count = poses.size();
-  serialize(archive, count);
-  if constexpr (Archive::kReads) {
-    constexpr std::size_t kPoseBytes = sizeof(std::int64_t) + 17 * sizeof(double);
-    archive.require(count, kPoseBytes);
-    poses.resize(count);
-  }
-  for (TimedPose& pose : poses) serialize(archive, pose);
-}
+constexpr std::size_t kPose_bytes = sizeof(std::int64_t) + 17 * sizeof(double);
+
+}  // namespace
 
 /// All but the keyframes' features and depth.
 template <typename Archive>
-void serialize(Archive& archive, Submap& submap) {
-  serialize(archive, submap.source);
-  serialize(archive, submap.frames_read);
-  serialize(archive, submap.timing);
-  serialize_poses(archive, submap.trajectory);
-  serialize_poses(archive, submap.recorded);
-  std::vector<TimedPose> keyframes;
-  for (const MapKeyframe& keyframe : submap.keyframes.keyframes)
-    keyframes.push_back({keyframe.frame_index, 0.0, keyframe.T_world_camera});
-  serialize_poses(archive, keyframes);
-  submap.keyframes.keyframes.resize(keyframes.size());
-  for (std::size_t k = 0; k < keyframes.size(); ++k) {
-    submap.keyframes.keyframes[k].frame_index = keyframes[k].frame_index;
-    submap.keyframes.keyframes[k].T_world_camera = keyframes[k].T_world_camera;
+static void serialize(Archive& archive, Ref<Archive, Submap> submap) {
+  archive(submap.source, submap.frames_read, submap.timing);
+  for (auto* const poses : {&submap.trajectory, &submap.recorded}) {
+    serialize_size(archive, *poses, kPose_bytes);
+    for (auto& pose : *poses) archive(pose);
   }
+  serialize_size(archive, submap.keyframes.keyframes, kPose_bytes);
+  double stamp_s = 0.0;  // not used; in the file, a keyframe is a TimedPose
+  for (auto& keyframe : submap.keyframes.keyframes)
+    archive(keyframe.frame_index, stamp_s, keyframe.T_world_camera);
 }
-
-}  // namespace
 
 Eigen::Isometry3d pose_between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b, double part) {
   Eigen::Isometry3d mean = Eigen::Isometry3d::Identity();
@@ -59,20 +43,14 @@ Eigen::Isometry3d pose_between(const Eigen::Isometry3d& a, const Eigen::Isometry
 }
 
 void save_submap(const Submap& submap, const std::filesystem::path& folder) {
-  ByteWriter out;
-  Submap copy = submap;
-  serialize(out, copy);
-  write_binary(folder / kSubmapFile, kSubmapMagic, kSubmapVersion, out.bytes());
+  save_binary(folder / kSubmapFile, kSubmapMagic, kSubmapVersion, submap);
   write_keyframe_database(submap.keyframes, folder / kKeyframesFile);
 }
 
 Submap load_submap_poses(const std::filesystem::path& folder) {
   const std::filesystem::path path = folder / kSubmapFile;
-  const std::string bytes = read_binary(path, kSubmapMagic, kSubmapVersion);
-  ByteReader in(bytes, path.string());
   Submap submap;
-  serialize(in, submap);
-  in.require_end();
+  load_binary(path, kSubmapMagic, kSubmapVersion, submap);
   const auto& keyframes = submap.keyframes.keyframes;
   const auto is_before = [](const auto& a, const auto& b) { return a.frame_index < b.frame_index; };
   if (!std::is_sorted(keyframes.begin(), keyframes.end(), is_before) ||

@@ -1,10 +1,9 @@
 // submap_join_file.cpp: joins as one binary file, with a checksum.
 #include "mapping/building/submap_join_file.hpp"
 
-#include <string>
+#include <string_view>
 
 #include "mapping/storage/binary_file.hpp"
-#include "mapping/types/serialize.hpp"
 
 namespace roomradar {
 namespace {
@@ -15,43 +14,25 @@ constexpr std::uint32_t kJoinsVersion = 1;
 }  // namespace
 
 template <typename Archive>
-static void serialize(Archive& archive, KeyframeLink& link) {
-  auto a = static_cast<std::uint64_t>(link.a), b = static_cast<std::uint64_t>(link.b);
-  serialize(archive, a);
-  serialize(archive, b);
-  serialize(archive, link.T_a_b);
-  serialize(archive, link.information);
-  if constexpr (Archive::kReads) {
-    if (!link.information.allFinite()) archive.fail("is damaged: a link's information is not a number");
-    link.a = a;
-    link.b = b;
-  }
+static void serialize(Archive& archive, Ref<Archive, KeyframeLink> link) {
+  static_assert(sizeof link.a == sizeof(std::uint64_t));
+  archive(link.a, link.b, link.T_a_b);
+  serialize_finite(archive, "is damaged: a link's information", link.information);
 }
 
 template <typename Archive>
-static void serialize(Archive& archive, SubmapJoin& join) {
+static void serialize(Archive& archive, Ref<Archive, SubmapJoin> join) {
   serialize(archive, join.status, JoinStatus::kLooksDifferent);
-  serialize(archive, join.links);
-  serialize(archive, join.T_a_b);
-  serialize(archive, join.agreeing);
-  serialize(archive, join.expected);
-  serialize(archive, join.recognised);
-  serialize(archive, join.agreement);
+  archive(join.links, join.T_a_b, join.agreeing, join.expected, join.recognised, join.agreement);
 }
 
 void save_joins(const std::vector<SubmapJoin>& joins, const std::filesystem::path& path) {
-  ByteWriter out;
-  std::vector<SubmapJoin> copy = joins;
-  serialize(out, copy);
-  write_binary(path, kJoinsMagic, kJoinsVersion, out.bytes());
+  save_binary(path, kJoinsMagic, kJoinsVersion, joins);
 }
 
 std::vector<SubmapJoin> load_joins(const std::filesystem::path& path) {
-  const std::string bytes = read_binary(path, kJoinsMagic, kJoinsVersion);
-  ByteReader in(bytes, path.string());
   std::vector<SubmapJoin> joins;
-  serialize(in, joins);
-  in.require_end();
+  load_binary(path, kJoinsMagic, kJoinsVersion, joins);
   return joins;
 }
 

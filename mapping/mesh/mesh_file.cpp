@@ -235,13 +235,13 @@ Mesh read_mesh(const std::filesystem::path& path) {
         Mesh mesh = is_gltf(format) ? read_gltf(path) : read_by_assimp(path);
         require_triangles(path, mesh);
         ByteWriter writer;
-        serialize(writer, mesh);
-        return writer.bytes();
+        writer(mesh);
+        return std::move(writer.bytes);
       },
       path.string() + ": cannot be read; is it damaged?", most_s, max_bytes);
   ByteReader reader(answer, path.string());
   Mesh mesh;
-  serialize(reader, mesh);
+  reader(mesh);
   reader.require_end();
   return mesh;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mapping/types/frame.hpp"
+#include "mapping/types/serialize.hpp"
 
 namespace roomradar {
 
@@ -50,18 +51,13 @@ class UpEstimator {
   /// Returns the direction that the user stated, with kGiven.
   [[nodiscard]] UpDirection take(const GivenUp& given) const;
 
-  /// Writes the complete state to a ByteWriter, or reads it from a ByteReader.
+  /// The complete state.
   template <typename Archive>
-  void serialize_fields(Archive& archive) {
-    serialize(archive, normals_world_);
-    serialize(archive, normals_seen_);
-    serialize(archive, keep_every_);
-    serialize(archive, down_sum_world_);
-    serialize(archive, camera_up_sum_world_);
-    serialize(archive, frames_);
-    serialize(archive, frames_with_gravity_);
+  friend void serialize(Archive& archive, Ref<Archive, UpEstimator> up) {
+    archive(up.normals_world_, up.normals_seen_, up.keep_every_, up.down_sum_world_, up.camera_up_sum_world_,
+            up.frames_, up.frames_with_gravity_);
     if constexpr (Archive::kReads) {
-      if (keep_every_ == 0) archive.fail("is damaged: no normal is kept");
+      if (up.keep_every_ == 0) archive.fail("is damaged: no normal is kept");
     }
   }
 

@@ -23,7 +23,7 @@ std::uint64_t fnv1a(std::string_view bytes, std::uint64_t hash = kHashOfNothing)
 }  // namespace
 
 void BinaryReader::fail(const std::string& fault) const {
-  throw Error(path_.string() + ": " + fault + "; make the map again or take it from a backup");
+  throw Error(path_.string() + ": " + fault + kFileAdvice);
 }
 
 double BinaryReader::take_finite(const char* what) {

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <type_traits>
 
+#include "mapping/types/serialize.hpp"
+
 namespace roomradar {
 
 static_assert(std::endian::native == std::endian::little, "files are written as memory has it");
@@ -64,6 +66,9 @@ class BinaryReader {
   const std::filesystem::path& path_;
 };
 
+/// End of messages about files that are damaged.
+inline constexpr const char* kFileAdvice = "; make the map again or take it from a backup";
+
 /// Writes `magic`, `version`, `body` and a checksum of all three. Throws Error if the file cannot be written.
 void write_binary(const std::filesystem::path& path, std::string_view magic, std::uint32_t version,
                   std::string_view body);
@@ -86,6 +91,25 @@ BinaryBody read_binary(const std::filesystem::path& path, std::string_view magic
 inline std::string read_binary(const std::filesystem::path& path, std::string_view magic,
                                std::uint32_t version) {
   return read_binary(path, magic, version, version).bytes;
+}
+
+/// Writes a file with these fields, each by serialize(). Throws Error if it cannot be written.
+template <typename... Fields>
+void save_binary(const std::filesystem::path& path, std::string_view magic, std::uint32_t version,
+                 const Fields&... fields) {
+  ByteWriter out;
+  out(fields...);
+  write_binary(path, magic, version, out.bytes);
+}
+/// Reads the fields of a file written by save_binary(). Throws Error as read_binary() does, and if a field is
+/// invalid or bytes are left.
+template <typename... Fields>
+void load_binary(const std::filesystem::path& path, std::string_view magic, std::uint32_t version,
+                 Fields&... fields) {
+  const std::string bytes = read_binary(path, magic, version);
+  ByteReader in(bytes, path.string(), kFileAdvice);
+  in(fields...);
+  in.require_end();
 }
 
 }  // namespace roomradar

@@ -1,5 +1,7 @@
-// serialize.hpp: binary serialization. One function serialize() per type lists the fields for writing and
-// reading.
+// serialize.hpp: the archive of binary state. A type lists its fields once, for writing and for reading:
+//   template <typename Archive>
+//   void serialize(Archive& archive, Ref<Archive, Room> room) { archive(room.name, room.width_m); }
+// The archive finds serialize() in namespace roomradar; it must not be in an anonymous namespace.
 #pragma once
 #include <Eigen/Geometry>
 #include <bit>
@@ -11,6 +13,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "mapping/types/frame.hpp"
@@ -23,22 +26,35 @@ namespace roomradar {
 
 static_assert(std::endian::native == std::endian::little, "bytes are written as memory has them");
 
-class ByteWriter {
- public:
-  static constexpr bool kReads = false;
-  void raw(const void* from, std::size_t count) { bytes_.append(static_cast<const char*>(from), count); }
-  [[nodiscard]] const std::string& bytes() const { return bytes_; }
+/// Type of the object in serialize(): only an archive that reads may change it.
+template <typename Archive, typename T>
+using Ref = std::conditional_t<Archive::kReads, T&, const T&>;
 
- private:
-  std::string bytes_;
+/// Archive that writes.
+struct ByteWriter {
+  static constexpr bool kReads = false;
+  std::string bytes;  ///< what was written so far
+
+  void raw(const void* from, std::size_t count) { bytes.append(static_cast<const char*>(from), count); }
+  template <typename... Fields>
+  void operator()(const Fields&... fields) {
+    (serialize(*this, fields), ...);
+  }
 };
 
-/// Reads and validates bytes written by a ByteWriter. Sizes are checked before memory is allocated. Invalid
-/// values throw Error naming the file.
+/// Archive that reads. Sizes are checked before memory is allocated. Missing bytes and invalid values throw
+/// Error naming the file and the fault. The bytes must outlive the reader.
 class ByteReader {
  public:
   static constexpr bool kReads = true;
-  ByteReader(std::string_view bytes, std::string where) : bytes_(bytes), where_(std::move(where)) {}
+  /// @param where  the file, in messages
+  /// @param advice  end of messages
+  ByteReader(std::string_view bytes, std::string where, const char* advice = "")
+      : bytes_(bytes), where_(std::move(where)), advice_(advice) {}
+  template <typename... Fields>
+  void operator()(Fields&... fields) {
+    (serialize(*this, fields), ...);
+  }
   void raw(void* to, std::size_t count) {
     require(count, 1);
     if (count > 0) std::memcpy(to, bytes_.data(), count);
@@ -68,19 +84,20 @@ class ByteReader {
   }
   [[nodiscard]] const std::string& where() const { return where_; }
   [[nodiscard]] std::size_t left() const { return bytes_.size(); }
-  [[noreturn]] void fail(const char* fault) const { throw Error(where_ + ": " + fault); }
+  [[noreturn]] void fail(const std::string& fault) const { throw Error(where_ + ": " + fault + advice_); }
 
  private:
   std::string_view bytes_;
   std::string where_;
+  const char* advice_;
 };
 
 template <typename Archive, typename Number>
 requires std::is_arithmetic_v<Number>
 void serialize(Archive& archive, Number& number) {
-  if constexpr (std::is_same_v<Number, bool>) {
+  if constexpr (std::is_same_v<std::remove_const_t<Number>, bool>) {
     auto byte = static_cast<std::uint8_t>(number);
-    serialize(archive, byte);
+    archive(byte);
     if constexpr (Archive::kReads) {
       if (byte > 1) archive.fail("is damaged: a truth value is neither 0 nor 1");
       number = byte == 1;
@@ -90,91 +107,129 @@ void serialize(Archive& archive, Number& number) {
   }
 }
 
+/// Serializes a value as another type of number: a bool that was written as 4 bytes, for example.
+template <typename Number, typename Archive, typename Value>
+void serialize_as(Archive& archive, Value& value) {
+  auto number = static_cast<Number>(value);
+  archive(number);
+  if constexpr (Archive::kReads) value = static_cast<Value>(number);
+}
+
 /// Serializes an enumeration whose values run from 0 to `last`.
 template <typename Archive, typename Enum>
 requires std::is_enum_v<Enum>
-void serialize(Archive& archive, Enum& value, Enum last) {
+void serialize(Archive& archive, Enum& value, std::remove_const_t<Enum> last) {
   auto number = static_cast<std::int32_t>(value);
-  serialize(archive, number);
+  archive(number);
   if constexpr (Archive::kReads) {
     if (number < 0 || number > static_cast<std::int32_t>(last)) archive.fail("is damaged: no such case");
     value = static_cast<Enum>(number);
   }
 }
 
-template <typename Archive>
-void serialize(Archive& archive, std::string& text) {
-  std::uint64_t size = text.size();
-  serialize(archive, size);
+/// Serializes the number of items (u64). A reader resizes to it, if so many items of at least `item_bytes`
+/// each can follow.
+template <typename Archive, typename Items>
+void serialize_size(Archive& archive, Items& items, std::size_t item_bytes) {
+  std::uint64_t size = items.size();
+  archive(size);
   if constexpr (Archive::kReads) {
-    archive.require(size, 1);
-    text.resize(size);
+    archive.require(size, item_bytes);
+    items.resize(size);
   }
-  archive.raw(text.data(), size);
+}
+
+/// Copies all items as one block, since copying a large mesh item by item would take seconds.
+/// @param items  a vector or a string
+template <typename Archive, typename Items>
+void serialize_items(Archive& archive, Items& items) {
+  using Item = typename Items::value_type;
+  static_assert(std::is_standard_layout_v<Item>);
+  serialize_size(archive, items, sizeof(Item));
+  archive.raw(items.data(), items.size() * sizeof(Item));
+}
+
+template <typename Archive>
+void serialize(Archive& archive, Ref<Archive, std::string> text) {
+  serialize_items(archive, text);
 }
 
 /// Serializes a fixed-size matrix as raw scalars in Eigen's storage order.
-template <typename Archive, typename Scalar, int kRows, int kColumns>
-void serialize(Archive& archive, Eigen::Matrix<Scalar, kRows, kColumns>& matrix) {
-  static_assert(kRows > 0 && kColumns > 0);
-  archive.raw(matrix.data(), sizeof(Scalar) * kRows * kColumns);
+template <typename Archive, typename Matrix>
+requires(Matrix::SizeAtCompileTime > 0) void serialize(Archive& archive, Matrix& matrix) {
+  archive.raw(matrix.data(), sizeof(typename Matrix::Scalar) * Matrix::SizeAtCompileTime);
+}
+
+/// Serializes numbers and fixed-size matrices that must be finite.
+/// @param what  their name in messages
+template <typename Archive, typename... Fields>
+void serialize_finite(Archive& archive, const char* what, Fields&... fields) {
+  archive(fields...);
+  if constexpr (Archive::kReads) {
+    const auto is_finite = [](const auto& field) {
+      if constexpr (requires { field.allFinite(); })
+        return field.allFinite();
+      else
+        return std::isfinite(field);
+    };
+    if (!(is_finite(fields) && ...)) archive.fail(std::string(what) + " is not a number");
+  }
 }
 
 template <typename Archive>
-void serialize(Archive& archive, Eigen::Isometry3d& T) {
-  serialize(archive, T.matrix());
+void serialize(Archive& archive, Ref<Archive, Eigen::Isometry3d> T) {
+  archive(T.matrix());
   if constexpr (Archive::kReads) {
     if (!is_rigid(T, 1e-3)) archive.fail("is damaged: a pose is not a rigid transform");
   }
 }
 
 template <typename Archive>
-void serialize(Archive& archive, Intrinsics& camera) {
-  serialize(archive, camera.width_px);
-  serialize(archive, camera.height_px);
-  for (double* number : {&camera.fx_px, &camera.fy_px, &camera.cx_px, &camera.cy_px})
-    serialize(archive, *number);
+void serialize(Archive& archive, Ref<Archive, Intrinsics> camera) {
+  archive(camera.width_px, camera.height_px, camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px);
   if constexpr (Archive::kReads) require_valid(camera, archive.where().c_str());
 }
 
 template <typename Archive>
-void serialize(Archive& archive, DepthNoise& noise) {
-  for (float* value : {&noise.base_m, &noise.linear, &noise.quadratic_per_m, &noise.from_m, &noise.grazing})
-    serialize(archive, *value);
+void serialize(Archive& archive, Ref<Archive, DepthNoise> noise) {
+  archive(noise.base_m, noise.linear, noise.quadratic_per_m, noise.from_m, noise.grazing);
 }
 
 template <typename Archive>
-void serialize(Archive& archive, SensorTiming& timing) {
-  for (double* time_s : {&timing.depth_readout_s, &timing.colour_readout_s, &timing.colour_delay_s})
-    serialize(archive, *time_s);
+void serialize(Archive& archive, Ref<Archive, SensorTiming> timing) {
+  archive(timing.depth_readout_s, timing.colour_readout_s, timing.colour_delay_s);
 }
 
 template <typename Archive>
-void serialize(Archive& archive, TimedPose& pose) {
-  serialize(archive, pose.frame_index);
-  serialize(archive, pose.stamp_s);
-  serialize(archive, pose.T_world_camera);
+void serialize(Archive& archive, Ref<Archive, TimedPose> pose) {
+  archive(pose.frame_index, pose.stamp_s, pose.T_world_camera);
 }
 
-template <typename Archive, typename Value>
-void serialize(Archive& archive, std::optional<Value>& value) {
-  bool there = value.has_value();
-  serialize(archive, there);
-  if constexpr (Archive::kReads) value = there ? std::optional<Value>(Value{}) : std::nullopt;
-  if (there) serialize(archive, *value);
+template <typename Value>
+void serialize(ByteWriter& archive, const std::optional<Value>& value) {
+  archive(value.has_value());
+  if (value) archive(*value);
+}
+template <typename Value>
+void serialize(ByteReader& archive, std::optional<Value>& value) {
+  bool there = false;
+  archive(there);
+  value.reset();
+  if (there) archive(value.emplace());
 }
 
-template <typename Archive, typename Item>
-void serialize(Archive& archive, std::vector<Item>& items) {
-  std::uint64_t size = items.size();
-  serialize(archive, size);
-  if constexpr (Archive::kReads) {
-    archive.require(size, 1);  // every item has at least one byte
-    items.clear();
-    for (std::uint64_t i = 0; i < size; ++i) serialize(archive, items.emplace_back());
-  } else {
-    for (Item& item : items) serialize(archive, item);
-  }
+template <typename Item>
+void serialize(ByteWriter& archive, const std::vector<Item>& items) {
+  archive(std::uint64_t{items.size()});
+  for (const Item& item : items) archive(item);
+}
+template <typename Item>
+void serialize(ByteReader& archive, std::vector<Item>& items) {
+  std::uint64_t size = 0;
+  archive(size);
+  archive.require(size, 1);  // every item has at least one byte
+  items.clear();
+  for (std::uint64_t i = 0; i < size; ++i) archive(items.emplace_back());
 }
 
 }  // namespace roomradar

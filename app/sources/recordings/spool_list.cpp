@@ -47,22 +47,17 @@ fs::path read_images(const fs::path& folder, std::size_t position, Frame& frame)
 
 /// @param has_sensor  false: an entry of a list that was written before frames had a sensor's times and noise
 template <typename Archive>
-void serialize_entry(Archive& archive, SpoolEntry& entry, bool has_sensor = true) {
-  Frame& frame = entry.frame;
-  serialize(archive, entry.fault);
+void serialize_entry(Archive& archive, Ref<Archive, SpoolEntry> entry, bool has_sensor = true) {
+  auto& frame = entry.frame;
+  archive(entry.fault);
   if (!entry.fault.empty()) return;
-  serialize(archive, frame.index);
-  serialize(archive, frame.stamp_s);
-  serialize(archive, frame.colour_after_depth_s);
-  serialize(archive, frame.depth_camera);
+  archive(frame.index, frame.stamp_s, frame.colour_after_depth_s, frame.depth_camera);
   bool coloured = frame.colour_camera.width_px > 0;
-  serialize(archive, coloured);
-  if (coloured) serialize(archive, frame.colour_camera);
-  serialize(archive, frame.T_colour_depth);
-  if (has_sensor) serialize(archive, frame.timing);
-  if (has_sensor) serialize(archive, frame.depth_noise);
-  serialize(archive, frame.T_world_camera);
-  serialize(archive, frame.down_camera);
+  archive(coloured);
+  if (coloured) archive(frame.colour_camera);
+  archive(frame.T_colour_depth);
+  if (has_sensor) archive(frame.timing, frame.depth_noise);
+  archive(frame.T_world_camera, frame.down_camera);
 }
 
 /// Parses an entry, with or without the sensor's times and noise; a damaged entry becomes an unreadable
@@ -107,13 +102,13 @@ SpoolList read_spool_list(const fs::path& folder) {
       std::find(kEarlierMagics.begin(), kEarlierMagics.end(), magic) == kEarlierMagics.end())
     list.fail("is not a list of spooled frames, or has another version");
   SpoolList left;
-  serialize(list, left.name);
+  list(left.name);
   left.sound_bytes = bytes.size() - list.left();
   while (!left.at_end) {
     // A truncated entry was being written when the process was killed; its frame was never used.
     std::uint32_t size = 0;
     if (list.left() < sizeof size) break;
-    serialize(list, size);
+    list(size);
     if (list.left() < size) break;
     left.at_end = size == 0;
     if (left.at_end && list.left() > 0) {  // zeros left by a power failure instead of entries
@@ -128,23 +123,22 @@ SpoolList read_spool_list(const fs::path& folder) {
 
 void begin_spool_list(const fs::path& folder, const std::string& name, std::ofstream& list) {
   const fs::path path = spool_list_file(folder);
-  std::string written_name = name;
   ByteWriter head;
   head.raw(kMagic.data(), kMagic.size());
-  serialize(head, written_name);
+  head(name);
   list.open(path, std::ios::binary);
-  list << head.bytes() << std::flush;
+  list << head.bytes << std::flush;
   std::error_code fault;
   if (!list) fs::remove(path, fault);  // holds no frame, and would block the folder
   require_written(list, path);
 }
 
-void append_to_spool_list(SpoolEntry* entry, const fs::path& folder, std::ofstream& list) {
+void append_to_spool_list(const SpoolEntry* entry, const fs::path& folder, std::ofstream& list) {
   ByteWriter bytes;
   if (entry) serialize_entry(bytes, *entry);
-  const auto size = static_cast<std::uint32_t>(bytes.bytes().size());
+  const auto size = static_cast<std::uint32_t>(bytes.bytes.size());
   list.write(reinterpret_cast<const char*>(&size), sizeof size);
-  list << bytes.bytes() << std::flush;
+  list << bytes.bytes << std::flush;
   require_written(list, spool_list_file(folder));
 }
 

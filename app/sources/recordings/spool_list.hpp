@@ -52,7 +52,7 @@ void begin_spool_list(const std::filesystem::path& folder, const std::string& na
 
 /// Appends an entry to the list. If `entry` is null, appends the source's end. Throws Error if the list
 /// cannot be written.
-void append_to_spool_list(SpoolEntry* entry, const std::filesystem::path& folder, std::ofstream& list);
+void append_to_spool_list(const SpoolEntry* entry, const std::filesystem::path& folder, std::ofstream& list);
 
 /// Writes the images of a frame to the folder, and returns the frame's entry. Throws Error if an image cannot
 /// be written.
