@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <vector>
 
 #include "mapping/storage/compressed_columns.hpp"
@@ -49,8 +48,7 @@ PackedView packed(const StoredView& view) {
 StoredView unpacked(const PackedView& view) {
   StoredView out{view.camera, view.noise, {}, {}, {}};
   if (view.columns.empty()) return out;
-  static const std::filesystem::path kName = "a keyframe's view";  // in messages
-  ColumnReader in(view.columns, kName);
+  ColumnReader in(view.columns, "a keyframe's view");
   const std::size_t pixels =
       static_cast<std::size_t>(view.camera.width_px) * static_cast<std::size_t>(view.camera.height_px);
   out.inverse_depth = image_of(in.take<std::uint16_t>("depth", pixels), view.camera);

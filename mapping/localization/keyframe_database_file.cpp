@@ -17,7 +17,6 @@
 #include "mapping/localization/keyframe_database_file.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 #include <span>
@@ -26,7 +25,6 @@
 
 #include "mapping/localization/keyframe_database.hpp"
 #include "mapping/storage/compressed_columns.hpp"
-#include "mapping/types/system/error.hpp"
 #include "mapping/types/validity.hpp"
 
 namespace roomradar {
@@ -38,6 +36,8 @@ constexpr std::uint32_t kMaxPreview_px = 4096;      // per side
 constexpr double kMaxPlace_m = 1e5;                 // a map reaches at most 32,768 voxels of 1 m
 constexpr float kPointStep_m = 2e-4F;
 constexpr float kDirectionStep = 1.0F / 32767.0F;
+
+using RowMajor3d = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 /// Returns the sum over all views of count(view). Reserving it avoids copies: long scans have 100 MB of
 /// items.
@@ -104,20 +104,12 @@ std::vector<std::uint8_t> byte_column(std::span<const MapKeyframe> views) {
   return bytes;
 }
 
-void put_place(std::string& out, const MapKeyframe& place) {
-  put(out, place.frame_index);
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) put(out, place.T_world_camera.linear()(row, column));
-  }
-  for (int row = 0; row < 3; ++row) put(out, place.T_world_camera.translation()(row));
-  put(out, static_cast<std::uint32_t>(place.preview_camera.width_px));
-  put(out, static_cast<std::uint32_t>(place.preview_camera.height_px));
-  for (const double number : {place.preview_camera.fx_px, place.preview_camera.fy_px,
-                              place.preview_camera.cx_px, place.preview_camera.cy_px}) {
-    put(out, number);
-  }
-  put(out, static_cast<std::uint32_t>(place.descriptors.size()));
-  put(out, static_cast<std::uint32_t>(place.patches.size()));
+void put_place(ByteWriter& out, const MapKeyframe& place) {
+  const Intrinsics& camera = place.preview_camera;
+  out(place.frame_index, RowMajor3d(place.T_world_camera.linear()),
+      Eigen::Vector3d(place.T_world_camera.translation()), camera.width_px, camera.height_px, camera.fx_px,
+      camera.fy_px, camera.cx_px, camera.cy_px, static_cast<std::uint32_t>(place.descriptors.size()),
+      static_cast<std::uint32_t>(place.patches.size()));
 }
 
 /// Items of the columns that no view read so far has claimed.
@@ -125,46 +117,44 @@ struct UnclaimedItems {
   std::size_t depth, points, directions, bytes;
 };
 
-void claim(std::size_t count, std::size_t& unclaimed, const char* what, const BinaryReader& in) {
+void claim(std::size_t count, std::size_t& unclaimed, const char* what, const ByteReader& in) {
   if (count > unclaimed) in.fail(std::string("cut short: ") + what + " missing");
   unclaimed -= count;
 }
 
 /// Takes the number of features or patches of a view.
-std::uint32_t take_count(BinaryReader& in, const char* what) {
-  const auto count = in.take<std::uint32_t>(what);
+std::uint32_t take_count(ByteReader& in, const char* what) {
+  const auto count = in.number<std::uint32_t>();
   if (count > static_cast<std::uint32_t>(kMostDescribed))
     in.fail("a view of " + std::to_string(count) + " " + what);
   return count;
 }
 
 /// Takes the preview's camera. Returns the number of its pixels.
-std::size_t take_camera(BinaryReader& in, Intrinsics& preview) {
-  const auto width = in.take<std::uint32_t>("preview size"), height = in.take<std::uint32_t>("preview size");
+std::size_t take_camera(ByteReader& in, Intrinsics& preview) {
+  const auto width = in.number<std::uint32_t>(), height = in.number<std::uint32_t>();
   if (width > kMaxPreview_px || height > kMaxPreview_px) {
     in.fail("a preview of " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
   }
-  std::array<double, 4> camera{};
-  in.take(camera.data(), camera.size(), "preview camera");
-  preview = {static_cast<int>(width), static_cast<int>(height), camera[0], camera[1], camera[2], camera[3]};
-  require_valid(preview, (in.path() + ": a preview's camera").c_str());
+  preview.width_px = static_cast<int>(width);
+  preview.height_px = static_cast<int>(height);
+  in(preview.fx_px, preview.fy_px, preview.cx_px, preview.cy_px);
+  require_valid(preview, (in.where() + ": a preview's camera").c_str());
   return std::size_t{width} * height;
 }
 
-void take_pose(BinaryReader& in, Eigen::Isometry3d& T_world_camera) {
-  std::array<double, 12> pose{};
-  in.take(pose.data(), pose.size(), "pose");
-  if (!std::all_of(pose.begin(), pose.end(), [](double x) { return std::isfinite(x); })) {
-    in.fail("a view's pose is not a number");
-  }
-  T_world_camera.linear() = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(pose.data());
-  T_world_camera.translation() = Eigen::Map<const Eigen::Vector3d>(pose.data() + 9);
+void take_pose(ByteReader& in, Eigen::Isometry3d& T_world_camera) {
+  RowMajor3d R;
+  Eigen::Vector3d t;
+  serialize_finite(in, "a view's pose", R, t);
+  T_world_camera.linear() = R;
+  T_world_camera.translation() = t;
   if (!(T_world_camera.translation().cwiseAbs().maxCoeff() <= kMaxPlace_m))
     in.fail("a view's pose is 100 km away and more, where no map reaches");
   if (!is_rigid(T_world_camera, 1e-6)) in.fail("a view's pose is not a rotation");
 }
 
-void require_sound(const SurfacePatch& patch, const BinaryReader& in) {
+void require_sound(const SurfacePatch& patch, const ByteReader& in) {
   constexpr float kUnit = 1e-3F;
   if (!(std::abs(patch.normal.norm() - 1.0F) <= kUnit && std::abs(patch.along.norm() - 1.0F) <= kUnit &&
         std::abs(patch.normal.dot(patch.along)) <= kUnit))
@@ -172,49 +162,47 @@ void require_sound(const SurfacePatch& patch, const BinaryReader& in) {
   if (patch.size >= kPatchSizes) in.fail("a patch of size " + std::to_string(patch.size));
 }
 
-Eigen::Vector3f take_point(BinaryReader& in, const char* what) {
+Eigen::Vector3f take_point(ByteReader& in, const char* what) {
   Eigen::Vector3f point;
-  in.take(point.data(), 3, what);
+  in(point);
   if (!point.allFinite()) in.fail(std::string(what) + ": a position is not a number");
   return point;
 }
 
 /// Takes a view of version 2, with its items.
-MapKeyframe take_whole_place(BinaryReader& in) {
+MapKeyframe take_whole_place(ByteReader& in) {
   constexpr std::size_t kDescribed_bytes = 3 * sizeof(float) + sizeof(Descriptor);
   MapKeyframe place;
-  place.frame_index = in.take<std::int64_t>("frame index");
+  place.frame_index = in.number<std::int64_t>();
   take_pose(in, place.T_world_camera);
-  in.require(take_camera(in, place.preview_camera), sizeof(std::uint16_t), "preview depth");
+  in.require(take_camera(in, place.preview_camera), sizeof(std::uint16_t));
   place.preview_depth_mm.resize(place.preview_camera.width_px, place.preview_camera.height_px);
   std::vector<std::uint16_t>& depth_mm = place.preview_depth_mm.pixels;
-  in.take(depth_mm.data(), depth_mm.size(), "preview depth");
+  in.raw(depth_mm.data(), depth_mm.size() * sizeof(std::uint16_t));
 
   const std::uint32_t features = take_count(in, "features");
-  in.require(features, kDescribed_bytes, "features");
+  in.require(features, kDescribed_bytes);
   place.points_camera.resize(features);
   place.descriptors.resize(features);
   for (Eigen::Vector3f& p : place.points_camera) p = take_point(in, "feature points");
-  for (Descriptor& bits : place.descriptors) in.take(bits.data(), bits.size(), "descriptors");
+  for (Descriptor& bits : place.descriptors) bits = in.number<Descriptor>();
 
   const std::uint32_t patches = take_count(in, "patches");
-  in.require(patches, kDescribed_bytes, "patches");
+  in.require(patches, kDescribed_bytes);
   place.patches.resize(patches);
   for (SurfacePatch& patch : place.patches) {
     patch.point = take_point(in, "patches");
-    in.take(patch.normal.data(), 3, "patches");
-    in.take(patch.along.data(), 3, "patches");
-    patch.size = in.take<std::uint8_t>("patches");
-    in.take(patch.bits.data(), patch.bits.size(), "patches");
+    in(patch.normal, patch.along, patch.size);
+    patch.bits = in.number<Descriptor>();
     require_sound(patch, in);
   }
   return place;
 }
 
 /// Takes a view whose items are in columns, and gives it room for them.
-MapKeyframe take_place(BinaryReader& in, UnclaimedItems& unclaimed) {
+MapKeyframe take_place(ByteReader& in, UnclaimedItems& unclaimed) {
   MapKeyframe place;
-  place.frame_index = in.take<std::int64_t>("frame index");
+  place.frame_index = in.number<std::int64_t>();
   take_pose(in, place.T_world_camera);
   claim(take_camera(in, place.preview_camera), unclaimed.depth, "preview depth", in);
   place.preview_depth_mm.resize(place.preview_camera.width_px, place.preview_camera.height_px);
@@ -281,7 +269,7 @@ std::vector<MapKeyframe> take_places(ColumnReader& in) {
   const auto bytes = in.take_packed<std::uint8_t>("descriptors");
   UnclaimedItems unclaimed{depth_mm.count, points.count, directions.count, bytes.count};
   std::vector<MapKeyframe> views;
-  const auto count = in.numbers().take<std::uint32_t>("number of views");
+  const auto count = in.numbers().number<std::uint32_t>();
   for (std::uint32_t i = 0; i < count; ++i) views.push_back(take_place(in.numbers(), unclaimed));
   if (unclaimed.depth + unclaimed.points + unclaimed.directions + unclaimed.bytes != 0)
     in.numbers().fail("items more than the views take");
@@ -298,24 +286,24 @@ std::vector<MapKeyframe> take_places(ColumnReader& in) {
 
 void write_keyframe_database(const KeyframeDatabase& keyframe_database, const std::filesystem::path& path) {
   const std::vector<MapKeyframe>& views = keyframe_database.keyframes;
-  std::string out;
-  put_column(out, depth_column(views));
-  put_column(out, point_column(views));
-  put_column(out, direction_column(views));
-  put_column(out, byte_column(views));
-  put(out, static_cast<std::uint32_t>(views.size()));
+  ByteWriter out;
+  put_column(out.bytes, depth_column(views));
+  put_column(out.bytes, point_column(views));
+  put_column(out.bytes, direction_column(views));
+  put_column(out.bytes, byte_column(views));
+  out(static_cast<std::uint32_t>(views.size()));
   for (const MapKeyframe& view : views) put_place(out, view);
-  write_binary(path, kMagic, kColumns, out);
+  write_binary(path, kMagic, kColumns, out.bytes);
 }
 
 KeyframeDatabase read_keyframe_database(const std::filesystem::path& path, FileChecksum checksum) {
   const BinaryBody body = read_binary(path, kMagic, kInline, kColumns, checksum);
-  ColumnReader in(body.bytes, path);
+  ColumnReader in(body.bytes, path.string());
   KeyframeDatabase keyframe_database;
   if (body.version == kColumns) {
     keyframe_database.keyframes = take_places(in);
   } else {
-    const auto count = in.numbers().take<std::uint32_t>("number of views");
+    const auto count = in.numbers().number<std::uint32_t>();
     for (std::uint32_t i = 0; i < count; ++i)
       keyframe_database.keyframes.push_back(take_whole_place(in.numbers()));
   }

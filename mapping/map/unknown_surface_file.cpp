@@ -7,8 +7,6 @@
 // (3 f32 each, m, relative to the origin), number of triangles (u32), triangles (3 u32 each).
 #include "mapping/map/unknown_surface_file.hpp"
 
-#include <array>
-#include <cmath>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -28,18 +26,17 @@ constexpr std::uint32_t kUncompressed = 1, kCompressed = 2;  // versions of the 
 constexpr std::size_t kWord_bytes = sizeof(std::uint32_t);
 constexpr double kMaxReach_m = 2e5;  // a map reaches at most 32,768 voxels of 1 m, and the grid a margin more
 
-void put_cells(std::string& out, const RunGrid& cells) {
+void put_cells(ByteWriter& out, const RunGrid& cells) {
   const std::span<const std::uint32_t> ends = cells.ends();
-  put(out, static_cast<std::uint32_t>(ends.size() / 2));
+  out(static_cast<std::uint32_t>(ends.size() / 2));
   std::uint32_t before = 0;
-  for (const std::uint32_t end : ends) put(out, end - std::exchange(before, end));
+  for (const std::uint32_t end : ends) out(end - std::exchange(before, end));
 }
 
-CellGrid take_grid(BinaryReader& in) {
+CellGrid take_grid(ByteReader& in) {
   CellGrid grid;
-  grid.cell_m = in.take_finite("edge of a cell");
-  in.take(grid.first_cell.data(), 3, "lowest cell");
-  in.take(grid.size.data(), 3, "size of the grid");
+  serialize_finite(in, "edge of a cell", grid.cell_m);
+  in(grid.first_cell, grid.size);
   if ((grid.size.array() < 0).any() || grid.size.cast<double>().prod() > kMaxUnknownCells)
     in.fail("a grid of " + std::to_string(grid.size.x()) + " x " + std::to_string(grid.size.y()) + " x " +
             std::to_string(grid.size.z()) + " cells");
@@ -53,15 +50,15 @@ CellGrid take_grid(BinaryReader& in) {
   return grid;
 }
 
-RunGrid take_cells(BinaryReader& in, const Eigen::Vector3i& size) {
+RunGrid take_cells(ByteReader& in, const Eigen::Vector3i& size) {
   const auto total = static_cast<std::uint64_t>(size.cast<double>().prod());
-  const auto count = in.take<std::uint32_t>("number of runs");
-  in.require(count, 2 * sizeof(std::uint32_t), "runs of unknown cells");
+  const auto count = in.number<std::uint32_t>();
+  in.require(count, 2 * sizeof(std::uint32_t));
   std::vector<std::uint32_t> ends;
   ends.reserve(2 * std::size_t{count});
   std::uint64_t next = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const auto clear = in.take<std::uint32_t>("runs"), length = in.take<std::uint32_t>("runs");
+    const auto clear = in.number<std::uint32_t>(), length = in.number<std::uint32_t>();
     const std::uint64_t from = next + clear;
     next = from + length;
     if (next > total) in.fail("a run of unknown cells that leaves the grid");
@@ -74,25 +71,23 @@ RunGrid take_cells(BinaryReader& in, const Eigen::Vector3i& size) {
   return {size, std::move(ends)};
 }
 
-Mesh take_mesh(BinaryReader& in) {
+Mesh take_mesh(ByteReader& in) {
   Mesh mesh;
-  for (int axis = 0; axis < 3; ++axis) {
-    mesh.origin[axis] = in.take_finite("origin of the mesh");
-    if (std::abs(mesh.origin[axis]) > kMaxReach_m) in.fail("a mesh where no map reaches");
-  }
-  const auto vertices = in.take<std::uint32_t>("number of vertices");
-  in.require(vertices, 3 * sizeof(float), "vertices");
+  serialize_finite(in, "origin of the mesh", mesh.origin);
+  if ((mesh.origin.array().abs() > kMaxReach_m).any()) in.fail("a mesh where no map reaches");
+  const auto vertices = in.number<std::uint32_t>();
+  in.require(vertices, 3 * sizeof(float));
   mesh.vertices.resize(vertices);
   for (Eigen::Vector3f& vertex : mesh.vertices) {
-    in.take(vertex.data(), 3, "vertices");
+    in(vertex);
     if (!(vertex.array().abs() <= static_cast<float>(2.0 * kMaxReach_m)).all())
       in.fail("a vertex that is not a number, or where no map reaches");
   }
-  const auto triangles = in.take<std::uint32_t>("number of triangles");
-  in.require(triangles, sizeof(Triangle), "triangles");
+  const auto triangles = in.number<std::uint32_t>();
+  in.require(triangles, sizeof(Triangle));
   mesh.triangles.resize(triangles);
   for (Triangle& triangle : mesh.triangles) {
-    in.take(triangle.data(), 3, "triangles");
+    triangle = in.number<Triangle>();
     for (const std::uint32_t corner : triangle)
       if (corner >= vertices) in.fail("a triangle without one of its vertices");
   }
@@ -100,7 +95,7 @@ Mesh take_mesh(BinaryReader& in) {
 }
 
 std::vector<std::uint32_t> take_words(const BinaryBody& body, const std::filesystem::path& path) {
-  ColumnReader in(body.bytes, path);
+  ColumnReader in(body.bytes, path.string());
   std::vector<std::uint32_t> words = in.take<std::uint32_t>("words");
   if (in.numbers().left() != 0) in.numbers().fail("bytes after its end");
   return words;
@@ -109,19 +104,16 @@ std::vector<std::uint32_t> take_words(const BinaryBody& body, const std::filesys
 }  // namespace
 
 void write_unknown_surface(const UnknownSurface& surface, const std::filesystem::path& path) {
-  std::string out;
-  put(out, surface.grid.cell_m);
-  put(out, surface.grid.first_cell.data(), 3);
-  put(out, surface.grid.size.data(), 3);
+  ByteWriter out;
+  out(surface.grid.cell_m, surface.grid.first_cell, surface.grid.size);
   put_cells(out, surface.unknown);
   const Mesh& mesh = surface.mesh_world;
-  put(out, mesh.origin.data(), 3);
-  put(out, static_cast<std::uint32_t>(mesh.vertices.size()));
-  for (const Eigen::Vector3f& vertex : mesh.vertices) put(out, vertex.data(), 3);
-  put(out, static_cast<std::uint32_t>(mesh.triangles.size()));
-  for (const Triangle& triangle : mesh.triangles) put(out, triangle.data(), 3);
+  out(mesh.origin, static_cast<std::uint32_t>(mesh.vertices.size()));
+  for (const Eigen::Vector3f& vertex : mesh.vertices) out(vertex);
+  out(static_cast<std::uint32_t>(mesh.triangles.size()));
+  out.raw(mesh.triangles.data(), mesh.triangles.size() * sizeof(Triangle));
   std::string body;
-  put_column(body, out.data(), out.size() / kWord_bytes, kWord_bytes);
+  put_column(body, out.bytes.data(), out.bytes.size() / kWord_bytes, kWord_bytes);
   write_binary(path, kMagic, kCompressed, body);
 }
 
@@ -129,10 +121,10 @@ UnknownSurface read_unknown_surface(const std::filesystem::path& path) {
   const BinaryBody body = read_binary(path, kMagic, kUncompressed, kCompressed);
   std::vector<std::uint32_t> words;
   if (body.version == kCompressed) words = take_words(body, path);
-  BinaryReader in(body.version == kCompressed ? std::string_view(reinterpret_cast<const char*>(words.data()),
-                                                                 words.size() * kWord_bytes)
-                                              : std::string_view(body.bytes),
-                  path);
+  ByteReader in(body.version == kCompressed ? std::string_view(reinterpret_cast<const char*>(words.data()),
+                                                               words.size() * kWord_bytes)
+                                            : std::string_view(body.bytes),
+                path.string(), kFileAdvice);
   UnknownSurface surface;
   surface.grid = take_grid(in);
   surface.unknown = take_cells(in, surface.grid.size);

@@ -81,11 +81,9 @@ class BlockWriter {
 
   /// Returns the file's body. Uses up the columns.
   [[nodiscard]] std::string take_body() {
-    std::string out;
-    put(out, tree_.resolution_m());
-    for (const float step : {tree_.units().log_odds, tree_.units().distance_m, tree_.units().weight})
-      put(out, step);
-    const auto move_column = [&](auto& column) { put_column(out, std::exchange(column, {})); };
+    ByteWriter out;
+    out(tree_.resolution_m(), tree_.units().log_odds, tree_.units().distance_m, tree_.units().weight);
+    const auto move_column = [&](auto& column) { put_column(out.bytes, std::exchange(column, {})); };
     move_column(kinds_);
     move_column(cubes_);
     move_column(log_odds_);
@@ -94,7 +92,7 @@ class BlockWriter {
     move_column(distances_);
     move_column(weights_);
     for (std::vector<std::uint8_t>* channel : {&red_, &green_, &blue_}) move_column(*channel);
-    return out;
+    return std::move(out.bytes);
   }
 
  private:
@@ -291,12 +289,6 @@ class BlockReader {
   std::uint64_t nodes_ = 0;
 };
 
-float take_step(BinaryReader& in) {
-  const auto step = in.take<float>("steps");
-  if (!(step > 1e-12F && step < 1e3F)) in.fail("damaged: a step of its numbers is out of range");
-  return step;
-}
-
 /// Writes the tree's blocks; see StaticMap::write().
 void write_octree_file(const BlockOctree& tree, const std::filesystem::path& path) {
   write_binary(path, kOctreeMagic, kOctreeVersion, BlockWriter(tree).take_body());
@@ -306,14 +298,14 @@ void write_octree_file(const BlockOctree& tree, const std::filesystem::path& pat
 /// is known, and fills the tree that it returns.
 void read_octree_file(const std::filesystem::path& path, const MakeOctree& make_tree) {
   const std::string body = read_binary(path, kOctreeMagic, kOctreeVersion);
-  ColumnReader in(body, path);
-  const double resolution_m = in.numbers().take_finite("resolution");
+  ColumnReader in(body, path.string());
+  double resolution_m = 0.0;
+  BlockUnits units;
+  in.numbers()(resolution_m, units.log_odds, units.distance_m, units.weight);
   if (!(resolution_m >= 0.001 && resolution_m <= 1.0))
     in.numbers().fail("damaged: its resolution is not within 0.001..1 m");
-  BlockUnits units;
-  units.log_odds = take_step(in.numbers());
-  units.distance_m = take_step(in.numbers());
-  units.weight = take_step(in.numbers());
+  for (const float step : {units.log_odds, units.distance_m, units.weight})
+    if (!(step > 1e-12F && step < 1e3F)) in.numbers().fail("damaged: a step of its numbers is out of range");
   BlockReader(in, units, make_tree(resolution_m)).read();
 }
 

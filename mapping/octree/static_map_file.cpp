@@ -2,21 +2,18 @@
 #include "mapping/octree/static_map_file.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <locale>
 #include <optional>
 #include <sstream>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include "mapping/octree/cell_levels.hpp"
 #include "mapping/octree/octomap_tree.hpp"
+#include "mapping/types/serialize.hpp"
 #include "mapping/types/system/atomic_file.hpp"
-#include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 
 namespace roomradar {
@@ -24,10 +21,6 @@ namespace {
 
 constexpr const char* kFirstLine = "# Octomap OcTree file";  // OctoMap's own
 constexpr std::size_t kMaxHeaderLines = 100;
-
-[[noreturn]] void fail(const std::filesystem::path& path, const std::string& fault) {
-  throw Error(path.string() + ": " + fault);
-}
 
 // Writes a file through a stream with 17 digits, which keep the resolution exact.
 template <typename Write>
@@ -159,78 +152,53 @@ class PlainWriter {
   std::size_t nodes_ = 0;
 };
 
-// Reads consecutive values from bytes that may end anywhere.
-class ByteReader {
- public:
-  ByteReader(const std::filesystem::path& path, std::string bytes) : path_(path), bytes_(std::move(bytes)) {}
-
-  template <typename Value>
-  Value get() {
-    static_assert(std::is_trivially_copyable_v<Value>);
-    if (bytes_.size() - at_ < sizeof(Value))
-      fail(path_, "is cut short after " + std::to_string(at_) + " bytes");
-    Value value;
-    std::memcpy(&value, bytes_.data() + at_, sizeof(Value));
-    at_ += sizeof(Value);
-    return value;
-  }
-  std::string get_line() {
-    const auto begin = bytes_.begin() + static_cast<std::ptrdiff_t>(at_);
-    const auto end = std::find(begin, bytes_.end(), '\n');
-    if (end == bytes_.end()) fail(path_, "is not an octree file, or its header is cut short");
-    at_ += static_cast<std::size_t>(end - begin) + 1;
-    return {begin, end};
-  }
-  [[nodiscard]] std::size_t bytes_left() const { return bytes_.size() - at_; }
-
- private:
-  const std::filesystem::path& path_;
-  std::string bytes_;
-  std::size_t at_ = 0;
-};
+std::string_view take_line(ByteReader& in) {
+  const std::size_t end = in.rest().find('\n');
+  if (end == std::string_view::npos) in.fail("is not an octree file, or its header is cut short");
+  return in.take(end + 1).substr(0, end);
+}
 
 struct Header {
   std::uint64_t nodes = 0;
   double resolution_m = 0.0;
 };
 
-Header read_header(const std::filesystem::path& path, ByteReader& bytes) {
-  if (bytes.get_line().rfind(kFirstLine, 0) != 0)
-    fail(path, "is not an octree file: its first line is not OctoMap's");
+Header read_header(ByteReader& bytes) {
+  if (!take_line(bytes).starts_with(kFirstLine))
+    bytes.fail("is not an octree file: its first line is not OctoMap's");
   Header header;
   std::string type;
   for (std::size_t line_number = 0; line_number < kMaxHeaderLines; ++line_number) {
-    std::istringstream words(bytes.get_line());
+    std::istringstream words{std::string(take_line(bytes))};
     words.imbue(std::locale::classic());
     std::string name;
     words >> name;
     if (name == "data") {
       if (type != OctoMapTree::kTreeType)
-        fail(path, "holds a tree of type \"" + type.substr(0, 40) + "\"; wanted " + OctoMapTree::kTreeType);
+        bytes.fail("holds a tree of type \"" + type.substr(0, 40) + "\"; wanted " + OctoMapTree::kTreeType);
       if (!(header.resolution_m >= 0.001 && header.resolution_m <= 1.0))
-        fail(path, "its resolution is not within 0.001..1 m");
+        bytes.fail("its resolution is not within 0.001..1 m");
       return header;
     }
     if (name == "id") words >> type;
     if (name == "size") words >> header.nodes;
     if (name == "res") words >> header.resolution_m;
     if (!words && !name.empty() && name[0] != '#')
-      fail(path, "its header line \"" + name.substr(0, 40) + "\" has no value");
+      bytes.fail("its header line \"" + name.substr(0, 40) + "\" has no value");
   }
-  fail(path, "its header has no end");
+  bytes.fail("its header has no end");
 }
 
 // Reads the format of OctoMap's readNodesRecurs. Unlike OctoMap, checks depth, ends and numbers.
 class NodeReader {
  public:
-  NodeReader(const std::filesystem::path& path, ByteReader& bytes, BlockOctree& tree)
-      : path_(path), bytes_(bytes), tree_(tree) {}
+  NodeReader(ByteReader& bytes, BlockOctree& tree) : bytes_(bytes), tree_(tree) {}
 
   /// Reads the next node and its subtree. Ignores an inner node's own log-odds, which follow from its
   /// children.
   Slot read(unsigned depth) {
     const Leaf node = read_fields();
-    return read_subtree(node, bytes_.get<std::uint8_t>(), depth);
+    return read_subtree(node, bytes_.number<std::uint8_t>(), depth);
   }
   [[nodiscard]] std::uint64_t nodes() const { return nodes_; }
 
@@ -248,17 +216,17 @@ class NodeReader {
   Leaf read_fields() {
     ++nodes_;
     Leaf leaf;
-    const auto log_odds = bytes_.get<float>();
-    const auto sampled = bytes_.get<std::uint8_t>();
+    const auto log_odds = bytes_.number<float>();
+    const auto sampled = bytes_.number<std::uint8_t>();
     if (!(std::abs(log_odds) <= 1000.0F) || sampled > 1) fault();
     leaf.log_odds = static_cast<LogOdds>(in_steps(log_odds, tree_.units().log_odds, -32767.0F, 32767.0F));
     if (leaf.log_odds == 0 && log_odds != 0.0F) leaf.log_odds = log_odds < 0.0F ? -1 : 1;
     if (sampled == 0) return leaf;
     Sample sample;
-    sample.distance_m = bytes_.get<float>();
-    sample.weight = bytes_.get<float>();
-    sample.colour = bytes_.get<Rgb>();
-    sample.has_colour = bytes_.get<std::uint8_t>() > 0;
+    sample.distance_m = bytes_.number<float>();
+    sample.weight = bytes_.number<float>();
+    sample.colour = bytes_.number<Rgb>();
+    sample.has_colour = bytes_.number<std::uint8_t>() > 0;
     if (!(std::abs(sample.distance_m) <= 1000.0F && sample.weight > 0.0F && sample.weight <= 1e6F)) fault();
     leaf.sample = sample;
     return leaf;
@@ -288,7 +256,7 @@ class NodeReader {
     for (unsigned i = 0; i < 8; ++i) {
       if ((children >> i & 1U) == 0) continue;
       const Leaf child = read_fields();
-      const auto its_children = bytes_.get<std::uint8_t>();
+      const auto its_children = bytes_.number<std::uint8_t>();
       if (child.sample && its_children != 0) fault();
       if (child.sample)
         store(child, cells, i);
@@ -307,7 +275,7 @@ class NodeReader {
     for (unsigned i = 0; i < 8; ++i) {
       if ((children >> i & 1U) == 0) continue;
       const Leaf leaf = read_fields();
-      if (bytes_.get<std::uint8_t>() != 0) fault();
+      if (bytes_.number<std::uint8_t>() != 0) fault();
       if (leaf.log_odds == 0 && !leaf.sample) fault();
       store(leaf, block, i);
     }
@@ -330,10 +298,9 @@ class NodeReader {
     return std::lround(std::clamp(value / step, least, most));
   }
   [[noreturn]] void fault() const {
-    fail(path_,
-         "is damaged: node " + std::to_string(nodes_) + " is invalid; scan the room again or use a copy");
+    bytes_.fail("is damaged: node " + std::to_string(nodes_) +
+                " is invalid; scan the room again or use a copy");
   }
-  const std::filesystem::path& path_;
   ByteReader& bytes_;
   OctreeWriter tree_;
   std::uint64_t nodes_ = 0;
@@ -359,18 +326,18 @@ void write_bt_file(const BlockOctree& tree, const std::filesystem::path& path) {
 }
 
 void read_ot_file(const std::filesystem::path& path, const MakeOctree& make_tree) {
-  ByteReader bytes(path, read_bytes(path, "an octree file"));
-  const Header header = read_header(path, bytes);
+  const std::string file = read_bytes(path, "an octree file");
+  ByteReader bytes(file, path.string());
+  const Header header = read_header(bytes);
   BlockOctree& tree = make_tree(header.resolution_m);
   if (header.nodes > 0) {
-    NodeReader nodes(path, bytes, tree);
+    NodeReader nodes(bytes, tree);
     tree.root = nodes.read(0);
     if (nodes.nodes() != header.nodes)
-      fail(path, "holds " + std::to_string(nodes.nodes()) + " nodes, but its header says " +
-                     std::to_string(header.nodes));
+      bytes.fail("holds " + std::to_string(nodes.nodes()) + " nodes, but its header says " +
+                 std::to_string(header.nodes));
   }
-  if (bytes.bytes_left() != 0)
-    fail(path, "has " + std::to_string(bytes.bytes_left()) + " bytes after its end");
+  bytes.require_end();
 }
 
 }  // namespace roomradar

@@ -1,10 +1,9 @@
-// binary_file.cpp: writes numbers to binary files and reads them without trusting the file.
+// binary_file.cpp: writes binary files and reads them without trusting the file.
 #include "mapping/storage/binary_file.hpp"
 
-#include <cmath>
+#include <cstring>
 #include <utility>
 
-#include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 
 namespace roomradar {
@@ -22,32 +21,22 @@ std::uint64_t fnv1a(std::string_view bytes, std::uint64_t hash = kHashOfNothing)
 
 }  // namespace
 
-void BinaryReader::fail(const std::string& fault) const {
-  throw Error(path_.string() + ": " + fault + kFileAdvice);
-}
-
-double BinaryReader::take_finite(const char* what) {
-  const auto number = take<double>(what);
-  if (!std::isfinite(number)) fail(std::string(what) + " is not a number");
-  return number;
-}
-
 void write_binary(const std::filesystem::path& path, std::string_view magic, std::uint32_t version,
                   std::string_view body) {
-  std::string beginning(magic), checksum;
-  put(beginning, version);
-  put(checksum, fnv1a(body, fnv1a(beginning)));
-  write_parts(path, {beginning, body, checksum});
+  ByteWriter beginning, checksum;
+  beginning.raw(magic.data(), magic.size());
+  beginning(version);
+  checksum(fnv1a(body, fnv1a(beginning.bytes)));
+  write_parts(path, {beginning.bytes, body, checksum.bytes});
 }
 
 BinaryBody read_binary(const std::filesystem::path& path, std::string_view magic, std::uint32_t oldest,
                        std::uint32_t newest, FileChecksum checksum) {
   std::string bytes = read_bytes(path, "a file that begins with " + std::string(magic));
-  BinaryReader in(bytes, path);
+  ByteReader in(bytes, path.string(), kFileAdvice);
   if (!bytes.starts_with(magic)) in.fail("not a file of this kind, which begins with " + std::string(magic));
-  std::string beginning(magic.size(), '\0');
-  in.take(beginning.data(), beginning.size(), "beginning");
-  const auto found = in.take<std::uint32_t>("version");
+  (void)in.take(magic.size());
+  const auto found = in.number<std::uint32_t>();
   if (found < oldest || found > newest) {
     in.fail("version " + std::to_string(found) + ", this program reads version " +
             (oldest == newest ? "" : std::to_string(oldest) + " to ") + std::to_string(newest));

@@ -1,70 +1,13 @@
-// binary_file.hpp: writes numbers to binary files, and reads and validates such files.
+// binary_file.hpp: binary files with a magic word, a version and a checksum.
 #pragma once
-#include <bit>
-#include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <string>
 #include <string_view>
-#include <type_traits>
 
 #include "mapping/types/serialize.hpp"
 
 namespace roomradar {
-
-static_assert(std::endian::native == std::endian::little, "files are written as memory has it");
-
-template <typename Number>
-void put(std::string& out, const Number* numbers, std::size_t count) {
-  static_assert(std::is_arithmetic_v<Number>);
-  out.append(reinterpret_cast<const char*>(numbers), count * sizeof(Number));
-}
-template <typename Number>
-void put(std::string& out, Number number) {
-  put(out, &number, 1);
-}
-
-/// Takes numbers from the front of a file's bytes. Throws Error naming the file if bytes are missing. Bytes
-/// and path must outlive the reader.
-class BinaryReader {
- public:
-  BinaryReader(std::string_view bytes, const std::filesystem::path& path) : bytes_(bytes), path_(path) {}
-
-  [[noreturn]] void fail(const std::string& fault) const;
-  /// Fails if fewer than `count` items remain. Call it before allocating memory for them.
-  void require(std::size_t count, std::size_t item_bytes, const char* what) const {
-    if (count > bytes_.size() / item_bytes) fail(std::string("cut short: ") + what + " missing");
-  }
-  template <typename Number>
-  void take(Number* numbers, std::size_t count, const char* what) {
-    static_assert(std::is_arithmetic_v<Number>);
-    require(count, sizeof(Number), what);
-    if (count > 0) std::memcpy(numbers, bytes_.data(), count * sizeof(Number));
-    bytes_.remove_prefix(count * sizeof(Number));
-  }
-  template <typename Number>
-  Number take(const char* what) {
-    Number number{};
-    take(&number, 1, what);
-    return number;
-  }
-  /// Takes the next `count` bytes. Returns a view of them, without a copy.
-  std::string_view take_bytes(std::size_t count, const char* what) {
-    require(count, 1, what);
-    const std::string_view taken = bytes_.substr(0, count);
-    bytes_.remove_prefix(count);
-    return taken;
-  }
-  /// Takes a double. Also throws if the number is not finite.
-  double take_finite(const char* what);
-  [[nodiscard]] std::size_t left() const { return bytes_.size(); }
-  [[nodiscard]] std::string path() const { return path_.string(); }
-
- private:
-  std::string_view bytes_;
-  const std::filesystem::path& path_;
-};
 
 /// End of messages about files that are damaged.
 inline constexpr const char* kFileAdvice = "; make the map again or take it from a backup";

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <memory>
 #include <new>
 
@@ -53,11 +54,10 @@ class Compressor {
 }  // namespace
 
 void put_column(std::string& out, const void* items, std::size_t count, std::size_t item_bytes) {
-  put(out, std::uint64_t{count});
-  const std::size_t size_at = out.size();
-  put(out, std::uint64_t{0});
-  const std::size_t begin = out.size();
+  std::array<std::uint64_t, 2> sizes{count};
+  const std::size_t sizes_at = out.size(), begin = sizes_at + sizeof(sizes);
   out.reserve(begin + ZSTD_compressBound(count * item_bytes));  // growing would copy what is there
+  out.resize(begin);
   Compressor compressor(count * item_bytes, out);
   const auto* const bytes = static_cast<const char*>(items);
   std::array<char, 1U << 16U> part;
@@ -68,13 +68,13 @@ void put_column(std::string& out, const void* items, std::size_t count, std::siz
       compressor.add({part.data(), size});
     }
   compressor.finish();
-  const auto stored = std::uint64_t{out.size() - begin};
-  std::memcpy(out.data() + size_at, &stored, sizeof(stored));
+  sizes[1] = out.size() - begin;
+  std::memcpy(out.data() + sizes_at, sizes.data(), sizeof(sizes));
 }
 
 std::size_t ColumnReader::take_count(std::size_t item_bytes, const char* what,
                                      std::optional<std::size_t> expected) {
-  const auto count = in_.take<std::uint64_t>(what);
+  const auto count = in_.number<std::uint64_t>();
   if (expected && count != *expected)
     in_.fail(std::to_string(count) + " " + what + ", where " + std::to_string(*expected) + " belong");
   if (count > bytes_left_ / item_bytes)

@@ -4,12 +4,12 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "mapping/storage/binary_file.hpp"
@@ -42,14 +42,16 @@ Number from_sign_last(Number stored) {
 
 /// Takes columns from the body of a file. Throws Error naming the file if the body is cut short or damaged.
 /// Rejects columns that together take more than 64 MB plus 1,000 times the body's size before memory is
-/// allocated for them: no map compresses that well. Body and path must outlive the reader.
+/// allocated for them: no map compresses that well. The body must outlive the reader.
 class ColumnReader {
  public:
-  ColumnReader(std::string_view body, const std::filesystem::path& path)
-      : in_(body, path), bytes_left_((std::uint64_t{64} << 20U) + 1000 * std::uint64_t{body.size()}) {}
+  /// @param where  the file, in messages
+  ColumnReader(std::string_view body, std::string where)
+      : in_(body, std::move(where), kFileAdvice),
+        bytes_left_((std::uint64_t{64} << 20U) + 1000 * std::uint64_t{body.size()}) {}
 
   /// Returns the reader of the numbers between columns.
-  [[nodiscard]] BinaryReader& numbers() { return in_; }
+  [[nodiscard]] ByteReader& numbers() { return in_; }
 
   /// A column that is still compressed.
   template <typename Number>
@@ -66,7 +68,7 @@ class ColumnReader {
   Packed<Number> take_packed(const char* what, std::optional<std::size_t> count = std::nullopt) {
     static_assert(std::is_arithmetic_v<Number>);
     const std::size_t items = take_count(sizeof(Number), what, count);
-    return {items, what, in_.take_bytes(in_.take<std::uint64_t>(what), what)};
+    return {items, what, in_.take(in_.number<std::uint64_t>())};
   }
   /// Items of an unpacked column, one after the other. Valid until the reader unpacks another column.
   template <typename Number>
@@ -105,7 +107,7 @@ class ColumnReader {
   std::size_t take_count(std::size_t item_bytes, const char* what, std::optional<std::size_t> expected);
   void unpack_planes(std::string_view frame, std::size_t bytes, const char* what);
 
-  BinaryReader in_;
+  ByteReader in_;
   std::uint64_t bytes_left_;
   std::string planes_;  ///< of the last column unpacked; reused
 };

@@ -28,32 +28,29 @@ constexpr std::uintmax_t kMaxPictureBytes = std::uintmax_t{1} << 28U;
 void write_surface_texture(const SurfaceTexture& texture, const std::filesystem::path& picture,
                            const std::filesystem::path& points) {
   write_bytes(picture, {reinterpret_cast<const char*>(texture.atlas_jpeg.data()), texture.atlas_jpeg.size()});
-  std::string body;
-  put(body, static_cast<std::uint32_t>(texture.width_px));
-  put(body, static_cast<std::uint32_t>(texture.height_px));
-  put(body, texture.mesh_fingerprint);
+  ByteWriter body;
+  body(texture.width_px, texture.height_px, texture.mesh_fingerprint);
   for (std::size_t axis = 0; axis < 2; ++axis) {
     std::vector<std::uint16_t> column;
     column.reserve(3 * texture.corners.size());
     for (const auto& triangle : texture.corners)
       for (const AtlasPoint& point : triangle) column.push_back(point[axis]);
-    put_column(body, column);
+    put_column(body.bytes, column);
   }
-  write_binary(points, kMagic, kVersion, body);
+  write_binary(points, kMagic, kVersion, body.bytes);
 }
 
 SurfaceTexture read_surface_texture(const std::filesystem::path& picture,
                                     const std::filesystem::path& points) {
   const std::string body = read_binary(points, kMagic, kVersion);
-  ColumnReader in(body, points);
+  ColumnReader in(body, points.string());
   SurfaceTexture texture;
-  const auto width = in.numbers().take<std::uint32_t>("width"),
-             height = in.numbers().take<std::uint32_t>("height");
+  const auto width = in.numbers().number<std::uint32_t>(), height = in.numbers().number<std::uint32_t>();
   if (width == 0 || height == 0 || width > kMaxSide_px || height > kMaxSide_px)
     in.numbers().fail("a texture of " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
   texture.width_px = static_cast<int>(width);
   texture.height_px = static_cast<int>(height);
-  texture.mesh_fingerprint = in.numbers().take<std::uint64_t>("fingerprint");
+  texture.mesh_fingerprint = in.numbers().number<std::uint64_t>();
   const auto x = in.take<std::uint16_t>("points");
   if (x.size() % 3 != 0 || x.size() > 3 * kMaxMeshTriangles)
     in.numbers().fail(std::to_string(x.size()) + " corners of triangles");

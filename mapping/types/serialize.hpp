@@ -83,6 +83,8 @@ class ByteReader {
     if (!bytes_.empty()) fail("has bytes after its end");
   }
   [[nodiscard]] const std::string& where() const { return where_; }
+  /// Returns the bytes that are left, without moving past them.
+  [[nodiscard]] std::string_view rest() const { return bytes_; }
   [[nodiscard]] std::size_t left() const { return bytes_.size(); }
   [[noreturn]] void fail(const std::string& fault) const { throw Error(where_ + ": " + fault + advice_); }
 

@@ -130,29 +130,26 @@ TEST(PlacesFile, ComesBackAsItWasButForRounding) {
 
 /// Returns the body of a file of version 2.
 std::string body_of_version_2(const KeyframeDatabase& keyframe_database) {
-  std::string out;
-  put(out, static_cast<std::uint32_t>(keyframe_database.keyframes.size()));
+  ByteWriter out;
+  out(static_cast<std::uint32_t>(keyframe_database.keyframes.size()));
   for (const MapKeyframe& place : keyframe_database.keyframes) {
-    put(out, place.frame_index);
+    out(place.frame_index);
     for (int row = 0; row < 3; ++row)
-      for (int column = 0; column < 3; ++column) put(out, place.T_world_camera.linear()(row, column));
-    put(out, place.T_world_camera.translation().data(), 3);
+      for (int column = 0; column < 3; ++column) out(place.T_world_camera.linear()(row, column));
+    out(Eigen::Vector3d(place.T_world_camera.translation()));
     const Intrinsics& camera = place.preview_camera;
-    for (const int size_px : {camera.width_px, camera.height_px})
-      put(out, static_cast<std::uint32_t>(size_px));
-    for (const double number : {camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px}) put(out, number);
-    put(out, place.preview_depth_mm.pixels.data(), place.preview_depth_mm.pixels.size());
-    put(out, static_cast<std::uint32_t>(place.descriptors.size()));
-    for (const Eigen::Vector3f& p : place.points_camera) put(out, p.data(), 3);
-    for (const Descriptor& bits : place.descriptors) put(out, bits.data(), bits.size());
-    put(out, static_cast<std::uint32_t>(place.patches.size()));
+    out(camera.width_px, camera.height_px, camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px);
+    for (const std::uint16_t depth_mm : place.preview_depth_mm.pixels) out(depth_mm);
+    out(static_cast<std::uint32_t>(place.descriptors.size()));
+    for (const Eigen::Vector3f& p : place.points_camera) out(p);
+    for (const Descriptor& bits : place.descriptors) out.raw(bits.data(), bits.size());
+    out(static_cast<std::uint32_t>(place.patches.size()));
     for (const SurfacePatch& patch : place.patches) {
-      for (const Eigen::Vector3f* v : {&patch.point, &patch.normal, &patch.along}) put(out, v->data(), 3);
-      put(out, patch.size);
-      put(out, patch.bits.data(), patch.bits.size());
+      out(patch.point, patch.normal, patch.along, patch.size);
+      out.raw(patch.bits.data(), patch.bits.size());
     }
   }
-  return out;
+  return out.bytes;
 }
 
 TEST(PlacesFile, TheVersionBeforeIsReadToTheBit) {
@@ -172,18 +169,14 @@ TEST(PlacesFile, TheVersionBeforeIsReadToTheBit) {
 std::string refusal_of(const std::filesystem::path& path, const std::vector<std::uint16_t>& depth,
                        const std::vector<std::int32_t>& points, const std::vector<std::int16_t>& directions,
                        std::size_t bytes, std::uint32_t features = 1) {
-  std::string out;
-  put_column(out, depth);
-  put_column(out, points);
-  put_column(out, directions);
-  put_column(out, std::vector<std::uint8_t>(bytes));
-  put(out, std::uint32_t{1});
-  put(out, std::int64_t{0});
-  for (const double number : {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0}) put(out, number);
-  for (const std::uint32_t size_px : {2U, 1U}) put(out, size_px);
-  for (const double number : {2.0, 2.0, 0.5, 0.5}) put(out, number);
-  for (const std::uint32_t count : {features, 1U}) put(out, count);
-  write_binary(path, "RRPLACES", 3, out);
+  ByteWriter out;
+  put_column(out.bytes, depth);
+  put_column(out.bytes, points);
+  put_column(out.bytes, directions);
+  put_column(out.bytes, std::vector<std::uint8_t>(bytes));
+  out(1U, std::int64_t{0}, Eigen::Matrix3d(Eigen::Matrix3d::Identity()), Eigen::Vector3d(0.0, 0.0, 0.0));
+  out(2U, 1U, 2.0, 2.0, 0.5, 0.5, features, 1U);
+  write_binary(path, "RRPLACES", 3, out.bytes);
   return refusal(path);
 }
 

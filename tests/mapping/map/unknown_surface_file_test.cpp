@@ -73,7 +73,7 @@ TEST(UnknownSurfaceFile, TheVersionBeforeIsRead) {
   const UnknownSurface surface = random_surface({200, 7, 9}, 3);
   write_unknown_surface(surface, path);
   const std::string body = read_binary(path, "RRUNKNWN", 2);
-  const auto words = ColumnReader(body, path).take<std::uint32_t>("words");
+  const auto words = ColumnReader(body, path.string()).take<std::uint32_t>("words");
   write_binary(path, "RRUNKNWN", 1, {reinterpret_cast<const char*>(words.data()), 4 * words.size()});
   const UnknownSurface read = read_unknown_surface(path);
   EXPECT_TRUE(read.unknown == surface.unknown);
@@ -144,15 +144,12 @@ TEST(UnknownSurfaceFile, ContentsThatNoMapHasAreRefused) {
 TEST(UnknownSurfaceFile, CountsThatLieAreRefusedBeforeMemoryIsTaken) {
   const test::TemporaryFolder folder;
   const std::filesystem::path path = folder.path() / "unknown.bin";
-  std::string body;
-  put(body, 0.01);
-  for (const std::int32_t number : {0, 0, 0, 10, 10, 10}) put(body, number);
-  std::string no_runs = body;
-  put(no_runs, std::uint32_t{0});
-  for (int axis = 0; axis < 3; ++axis) put(no_runs, 0.0);
-  put(body, std::uint32_t{0xFFFFFFFF});
-  put(no_runs, std::uint32_t{0xFFFFFFFF});
-  for (const std::string& lies : {body, no_runs}) {
+  ByteWriter body;
+  body(0.01, 0, 0, 0, 10, 10, 10);
+  ByteWriter no_runs = body;
+  no_runs(0U, 0.0, 0.0, 0.0, 0xFFFFFFFFU);
+  body(0xFFFFFFFFU);
+  for (const std::string& lies : {body.bytes, no_runs.bytes}) {
     write_binary(path, "RRUNKNWN", 1, lies);
     EXPECT_NE(refusal(path).find("cut short"), std::string::npos) << refusal(path);
   }

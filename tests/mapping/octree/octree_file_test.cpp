@@ -136,9 +136,9 @@ struct Columns {
 };
 
 std::string body_of(const Columns& columns) {
-  std::string out;
-  put(out, columns.resolution_m);
-  for (const float step : {columns.log_odds_step, 1e-6F, 1e-3F}) put(out, step);
+  ByteWriter head;
+  head(columns.resolution_m, columns.log_odds_step, 1e-6F, 1e-3F);
+  std::string out = head.bytes;
   put_column(out, columns.kinds);
   put_column(out, columns.cubes);
   put_column(out, columns.log_odds);

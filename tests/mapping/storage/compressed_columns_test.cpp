@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
-#include <filesystem>
 #include <random>
 #include <string>
 #include <vector>
@@ -14,7 +13,7 @@
 namespace roomradar::compressed_columns_test {
 namespace {
 
-const std::filesystem::path kPath = "columns";
+constexpr const char* kPath = "columns";
 
 /// Noise in the low bytes, so that a column does not shrink to nothing.
 template <typename Number>
