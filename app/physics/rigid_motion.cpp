@@ -238,6 +238,15 @@ void limit(Velocity& velocity, const PhysicsConfig& config) {
   limit(velocity.angular_rad_s, config.max_angular_rad_s);
 }
 
+Velocity velocity_of(const Body& body) {
+  return {body.velocity_world_mps, body.angular_velocity_world_rad_s};
+}
+
+void set_velocity(Body& body, const Velocity& velocity) {
+  body.velocity_world_mps = velocity.linear_mps;
+  body.angular_velocity_world_rad_s = velocity.angular_rad_s;
+}
+
 /// Upper bound of the speed of the body's points.
 double speed_of(const Body& body, const Velocity& velocity) {
   return velocity.linear_mps.norm() + velocity.angular_rad_s.norm() * body.mass.radius_m;
@@ -252,8 +261,9 @@ void wake(MovingBody& sleeper) {
 /// Velocities of the solver's bodies: of the substep's bodies, then of the bystanders.
 using Velocities = std::vector<Velocity>;
 
-/// Simulation of one substep. Its solves take velocities and return velocities; only run() keeps them. The
-/// functions set the bounds, guesses and masses of the system's contacts and bodies before they solve.
+/// Simulation of one substep. Its solves take velocities and return velocities; only set_velocities() gives
+/// them to the bodies. The functions set the bounds, guesses and masses of the system's contacts and bodies
+/// before they solve.
 class Substep {
  public:
   Substep(std::span<MovingBody> bodies, const PhysicsConfig& config, ContactSystem& system,
@@ -277,10 +287,10 @@ class Substep {
     return system_.solver.solve(system_.contacts, system_.bodies, std::move(velocities), rolling);
   }
 
-  [[nodiscard]] Velocities begin();
-  [[nodiscard]] Velocities with_bystanders(Velocities of_members) const;
+  void begin();
+  [[nodiscard]] Velocities velocities() const;
+  void set_velocities(const Velocities& velocities) const;
   [[nodiscard]] std::optional<Velocities> bounce(const Velocities& velocities);
-  void give_bystanders(const Velocities& velocities) const;
   [[nodiscard]] bool wake_hit_sleepers();
   [[nodiscard]] Velocities hold_up(Velocities velocities, bool keeps_impulses);
   void wake_unbalanced_sleepers(const Velocities& after);
@@ -300,30 +310,34 @@ class Substep {
   void settle(const Velocities& rises, const std::vector<double>& gone_s) const;
 };
 
-/// Resets what the bodies keep of the last substep. Returns the velocities with which the members enter this
-/// one.
-Velocities Substep::begin() {
+/// Resets what the bodies keep of the last substep, and limits their velocities.
+void Substep::begin() {
   results_.assign(bodies_.size(), {});
-  Velocities velocities;
   for (MovingBody& moving : bodies_) {
-    Velocity& velocity = velocities.emplace_back(
-        Velocity{moving.body->velocity_world_mps, moving.body->angular_velocity_world_rad_s});
+    Velocity velocity = velocity_of(*moving.body);
     limit(velocity, config_);
+    set_velocity(*moving.body, velocity);
     moving.left_s = moving.body->asleep ? 0.0 : moving.dt_s;
     moving.crosses = false;
     moving.stops_in_place = 0;
     moving.limited_by = {};
     moving.T_world_near.reset();
   }
+}
+
+/// Returns the velocities of the solver's bodies.
+Velocities Substep::velocities() const {
+  Velocities velocities;
+  for (const MovingBody& moving : bodies_) velocities.push_back(velocity_of(*moving.body));
+  for (const Bystander& bystander : system_.bystanders) velocities.push_back(velocity_of(*bystander.body));
   return velocities;
 }
 
-/// Returns the members' velocities, followed by those of the bystanders.
-Velocities Substep::with_bystanders(Velocities of_members) const {
-  of_members.resize(bodies_.size());
-  for (const Bystander& bystander : system_.bystanders)
-    of_members.push_back({bystander.body->velocity_world_mps, bystander.body->angular_velocity_world_rad_s});
-  return of_members;
+/// Sets the velocities of the solver's bodies.
+void Substep::set_velocities(const Velocities& velocities) const {
+  for (std::size_t i = 0; i < bodies_.size(); ++i) set_velocity(*bodies_[i].body, velocities[i]);
+  for (std::size_t i = 0; i < system_.bystanders.size(); ++i)
+    set_velocity(*system_.bystanders[i].body, velocities[bodies_.size() + i]);
 }
 
 /// Cancels the velocity into contacts that would close within the time left, with restitution for fast
@@ -354,16 +368,6 @@ std::optional<Velocities> Substep::bounce(const Velocities& velocities) {
     after = solved(velocities, 0.0);
   }
   return after;
-}
-
-/// Sets the velocities of the bodies that are not advanced in this substep.
-void Substep::give_bystanders(const Velocities& velocities) const {
-  for (std::size_t i = 0; i < system_.bystanders.size(); ++i) {
-    Body& body = *system_.bystanders[i].body;
-    const Velocity& velocity = velocities[bodies_.size() + i];
-    body.velocity_world_mps = velocity.linear_mps;
-    body.angular_velocity_world_rad_s = velocity.angular_rad_s;
-  }
 }
 
 /// Wakes the sleeping bodies that bounce() moved. Returns true if there are any: their contacts are not in
@@ -634,40 +638,35 @@ void Substep::settle(const Velocities& rises, const std::vector<double>& gone_s)
 }
 
 void Substep::run() {
-  Velocities velocities = begin();
+  begin();
   const auto is_any_active = [&] { return std::any_of(bodies_.begin(), bodies_.end(), is_active); };
   for (int stop = 0; stop < config_.max_contact_events && is_any_active(); ++stop) {
     find_contacts(bodies_, config_, up_, system_);
-    velocities = with_bystanders(std::move(velocities));
 
-    if (std::optional<Velocities> bounced = bounce(velocities)) {
-      velocities = *std::move(bounced);
-      give_bystanders(velocities);
+    if (const std::optional<Velocities> bounced = bounce(velocities())) {
+      set_velocities(*bounced);
       const bool woke = wake_hit_sleepers();
       count_impacts(bodies_, system_);
       if (woke) continue;
     }
 
-    const Velocities after = hold_up(velocities, stop == 0);
+    const Velocities before = velocities();
+    const Velocities after = hold_up(before, stop == 0);
     if (stop == 0) wake_unbalanced_sleepers(after);
     note_support(bodies_, config_, up_, system_, results_);
-    if (stop == 0) find_balanced(velocities);
+    if (stop == 0) find_balanced(before);
 
-    const Velocities means = mean_velocities(velocities, after);
+    const Velocities means = mean_velocities(before, after);
     follow_features();
     const Velocities rising = rises(means);
     const Velocities lifts = corrections();
     const std::vector<Eigen::Matrix3d> inertias_before_m2 = inertias_m2();
     const std::vector<double> gone_s = move(motions(means, rising, lifts));
-    velocities = velocities_after(gone_s, inertias_before_m2, std::move(velocities), after);
+    set_velocities(velocities_after(gone_s, inertias_before_m2, before, after));
     use_time(gone_s);
     settle(rising, gone_s);
   }
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    bodies_[i].body->velocity_world_mps = velocities[i].linear_mps;
-    bodies_[i].body->angular_velocity_world_rad_s = velocities[i].angular_rad_s;
-    results_[i].is_balanced = results_[i].is_balanced && results_[i].is_held_up;
-  }
+  for (SubstepResult& result : results_) result.is_balanced &= result.is_held_up;
 }
 
 }  // namespace
