@@ -9,6 +9,8 @@
 #include <numbers>
 #include <utility>
 
+#include "app/physics/collision_queries.hpp"
+#include "app/physics/depenetration.hpp"
 #include "app/physics/physics.hpp"
 #include "app/physics/placement/placement.hpp"
 #include "app/physics/sleeper_contacts.hpp"
@@ -30,15 +32,33 @@ int pieces_of(double waited_s, const PhysicsConfig& config) {
 
 constexpr double kNearbyReach_m = 0.25;  // dynamic surfaces farther than this from the object do not push it
 
+/// A radar and the total duration of its queries. Refers to both, which must outlive it.
+struct TimedRadar {
+  Radar& radar;
+  std::atomic<double>& queries_ms;  ///< incremented by each query
+};
+
 /// How the dynamic surfaces near an object move in this frame.
 struct SurfaceSweep {
   Eigen::Vector3d way_world = Eigen::Vector3d::Zero();  // from the last frame to this one, m
   PushDirections push{};
 };
 
-SurfaceSweep sweep_near(const DueObject& one, const FrameScene& moving) {
+/// An object that is moved in this frame, and the surfaces and objects that it can touch. Its queries refer
+/// to it.
+struct DueObject {
+  VirtualObject* object = nullptr;
+  double waited_s = 0.0;  ///< time since the object was last advanced; may exceed config.max_advance_s
+  std::vector<SceneTree> scene{};   ///< surfaces, then the other objects
+  std::vector<SceneBody> bodies{};  ///< body of each tree of the scene; null for surfaces
+  RadarScene seen{};                ///< `scene`
+  CollisionQueries probe{};         ///< against `seen`
+  SurfaceSweep sweep{};
+  bool was_overlapped = false;  ///< a surface overlapped the object, which may have been shifted
+};
+
+SurfaceSweep sweep_near(const VirtualObject& object, const FrameScene& moving) {
   constexpr double kFarthest_m = 0.15;  // 4.5 m/s at 30 frames/s
-  const VirtualObject& object = *one.object;
   const auto way = translation_near(moving.last_dynamic_points_world(), moving.dynamic_points_world(),
                                     middle_world(object), radius_m(object) + kNearbyReach_m, kFarthest_m);
   return {way.value_or(Eigen::Vector3d::Zero()), {}};
@@ -53,8 +73,9 @@ int steps_of(const SurfaceSweep& sweep) {
 
 /// Moves the dynamic surfaces in the object's scene to where they are when a part of their way is left.
 /// @param surfaces  this frame's surfaces, with which the object's scene begins
-void put_surfaces(SurfaceSweep& sweep, double left, const FrameScene& moving,
-                  std::span<const SceneTree> surfaces, DueObject& one, AdvancedBody& advanced) {
+void put_surfaces(double left, const FrameScene& moving, std::span<const SceneTree> surfaces, DueObject& one,
+                  AdvancedBody& advanced) {
+  SurfaceSweep& sweep = one.sweep;
   const Eigen::Vector3d back_world = -left * sweep.way_world;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     if (!is_moving_surface(surfaces[i].kind)) continue;
@@ -112,21 +133,21 @@ double depth_m(const Mesh& side, const Eigen::Vector3d& shift_world, const Virtu
 
 /// If dynamic surfaces overlap the object from two opposite sides, as two fingers do: sets its velocity to
 /// theirs, and to the middle between them. Returns false otherwise.
-bool grip(const SurfaceSweep& sweep, const Eigen::Vector3d& shift_world, const DynamicSurface& surfaces,
-          const DueObject& one, double dt_s, Radar& radar) {
+bool grip(const Eigen::Vector3d& shift_world, const DynamicSurface& surfaces, const DueObject& one,
+          double dt_s, Radar& radar) {
   constexpr double kDeepest_m = 0.03;  // fingers may be this deep in the object
   constexpr double kCentred = 0.3;     // fraction of the way to the middle, per call
   VirtualObject& object = *one.object;
   const Eigen::Vector3d middle = middle_world(object) - shift_world;
   const Mesh near = triangles_near(surfaces, middle, radius_m(object));
   if (near.triangles.empty()) return false;
-  for (const Eigen::Vector3d& direction : sweep.push.span()) {
+  for (const Eigen::Vector3d& direction : one.sweep.push.span()) {
     const Mesh ahead = side_of(near, middle, direction), behind = side_of(near, middle, -direction);
     if (ahead.triangles.empty() || behind.triangles.empty()) continue;
     const double ahead_m = depth_m(ahead, shift_world, object, direction, radar);
     const double behind_m = depth_m(behind, shift_world, object, -direction, radar);
     if (!(ahead_m > 0.0 && behind_m > 0.0 && std::max(ahead_m, behind_m) < kDeepest_m)) continue;
-    object.body.velocity_world_mps = sweep.way_world / std::max(one.waited_s, 1e-9) +
+    object.body.velocity_world_mps = one.sweep.way_world / std::max(one.waited_s, 1e-9) +
                                      kCentred * 0.5 * (behind_m - ahead_m) / std::max(dt_s, 1e-9) * direction;
     object.body.angular_velocity_world_rad_s.setZero();
     object.body.asleep = false;
@@ -179,19 +200,8 @@ void keep_contacts(std::span<const DueObject> due, std::span<AdvancedBody> advan
   }
 }
 
-}  // namespace
-
-bool is_turn_to_move(std::size_t index, std::int64_t frame_number, const SessionConfig& config) {
-  const std::int64_t number = static_cast<std::int64_t>(index);
-  const std::int64_t pictures = config.picture_every_n_frames;
-  if (pictures == 1) return (frame_number + number) % config.move_every_n_frames == 0;
-  // Frames with a picture do not move objects. The same frames are left out if no pictures are made, so
-  // objects move the same with and without pictures.
-  const std::int64_t frame = frame_number % pictures;
-  const std::int64_t of_these = frame_number / pictures * (pictures - 1) + frame - 1;
-  return frame > 0 && (of_these + number) % config.move_every_n_frames == 0;
-}
-
+/// Returns the body of each tree of the object's scene. Entries of surfaces are null. The other objects must
+/// be the last trees of the scene.
 std::vector<SceneBody> bodies_in(const std::vector<SceneTree>& scene,
                                  std::span<const std::unique_ptr<VirtualObject>> objects,
                                  const VirtualObject& object) {
@@ -205,6 +215,8 @@ std::vector<SceneBody> bodies_in(const std::vector<SceneTree>& scene,
   return bodies;
 }
 
+/// Returns true if nothing new can overlap the object: only physics has moved it to its pose, and no moving
+/// surface is within 25 cm.
 bool is_undisturbed(const VirtualObject& object, std::span<const SceneTree> scene) {
   if (!object.placement.T_world_undisturbed) return false;
   if (object.placement.T_world_undisturbed->matrix() != object.body.T_world_object.matrix()) return false;
@@ -215,48 +227,55 @@ bool is_undisturbed(const VirtualObject& object, std::span<const SceneTree> scen
   });
 }
 
+/// Advances the objects together; see advance_together(). A carried object moves at the velocity that reaches
+/// its target after waited_s. Gravity, friction and restitution do not act on a carried object. Obstacles
+/// stop it.
+///
+/// Within the call, the dynamic surfaces near an object move from their position in the last frame to their
+/// position in this frame. They move in steps of at most 15 mm, and push the object on the way. Hence a hand
+/// that moves by up to 15 cm per frame does not pass the object between two frames. An inferred back that
+/// engulfs the object (is_engulfed()) is left out of the object's scene.
+/// @param moving    this frame's surfaces; null: no surface is known to be dynamic
+/// @param contacts  buffers; keeps impulses as initial guesses for a next call with the same objects
+/// @param counts    incremented by the contacts of this call
 void advance_objects(std::span<DueObject> due, const FrameScene* moving, const PhysicsConfig& config,
                      const TimedRadar& timed, ContactSystem& contacts, ContactCounts& counts) {
-  std::vector<RadarScene> scenes;
-  std::vector<CollisionQueries> probes;
   std::vector<AdvancedBody> advanced;
-  std::vector<SurfaceSweep> sweeps;
   const std::vector<SceneTree> surfaces = moving != nullptr ? moving->surfaces() : std::vector<SceneTree>{};
-  scenes.reserve(due.size());  // the queries refer to them
-  probes.reserve(due.size());
   int pieces = 1;
   for (DueObject& one : due) {
-    scenes.push_back({one.scene, {}});
-    probes.push_back(make_collision_queries(timed.radar, one.object->model->shape.touched, scenes.back(),
-                                            &timed.queries_ms));
-    probes.back().others = one.bodies;
-    sweeps.push_back(moving == nullptr || one.is_undisturbed ? SurfaceSweep{} : sweep_near(one, *moving));
-    Body& body = one.object->body;
+    VirtualObject& object = *one.object;
+    one.seen.trees = one.scene;
+    one.probe = make_collision_queries(timed.radar, object.model->shape.touched, one.seen, &timed.queries_ms);
+    one.probe.others = one.bodies;
+    const bool is_left_alone = moving != nullptr && is_undisturbed(object, one.scene);
+    if (moving != nullptr && !is_left_alone) one.sweep = sweep_near(object, *moving);
+    Body& body = object.body;
     std::vector<SceneTree*> seen_as;  // in the scenes of the others
     for (DueObject& other : due)
       for (std::size_t i = 0; i < other.bodies.size(); ++i)
         if (other.bodies[i].body == &body) seen_as.push_back(&other.scene[i]);
     advanced.push_back({.body = &body,
-                        .probe = &probes.back(),
-                        .mass_kg = body.mass.mass_kg,
-                        .is_carried = one.object->carried_to_world.has_value(),
-                        .is_undisturbed = one.is_undisturbed,
-                        .surface_speed_mps = sweeps.back().way_world.norm() / std::max(one.waited_s, 1e-9),
+                        .probe = &one.probe,
+                        .mass_kg = object.body.mass.mass_kg,
+                        .is_carried = object.carried_to_world.has_value(),
+                        .is_undisturbed = is_left_alone,
+                        .surface_speed_mps = one.sweep.way_world.norm() / std::max(one.waited_s, 1e-9),
                         .moved = [&body, seen_as = std::move(seen_as)] {
                           for (SceneTree* tree : seen_as) tree->instance.T_world_mesh = body.T_world_object;
                         }});
-    pieces = std::max({pieces, pieces_of(one.waited_s, config), steps_of(sweeps.back())});
+    pieces = std::max({pieces, pieces_of(one.waited_s, config), steps_of(one.sweep)});
   }
   for (int left = pieces; left > 0; --left) {
     for (std::size_t i = 0; i < due.size(); ++i) {
       advanced[i].dt_s = due[i].waited_s / pieces;
       if (due[i].object->carried_to_world) set_in_hand(*due[i].object, left * advanced[i].dt_s);
-      if (moving == nullptr || due[i].is_undisturbed) continue;
+      if (moving == nullptr || advanced[i].is_undisturbed) continue;
       const double left_part = static_cast<double>(left - 1) / pieces;
-      put_surfaces(sweeps[i], left_part, *moving, surfaces, due[i], advanced[i]);
+      put_surfaces(left_part, *moving, surfaces, due[i], advanced[i]);
       advanced[i].is_gripped = !due[i].object->carried_to_world &&
-                               grip(sweeps[i], -left_part * sweeps[i].way_world, moving->dynamic_world(),
-                                    due[i], advanced[i].dt_s, timed.radar);
+                               grip(-left_part * due[i].sweep.way_world, moving->dynamic_world(), due[i],
+                                    advanced[i].dt_s, timed.radar);
       advanced[i].is_carried = advanced[i].is_gripped || due[i].object->carried_to_world;
       leave_out_engulfing_back(due[i], advanced[i], config, timed);
     }
@@ -270,6 +289,19 @@ void advance_objects(std::span<DueObject> due, const FrameScene* moving, const P
         counts.by_kind[kind] += report.contacts_by_kind[kind];
     }
   }
+}
+
+}  // namespace
+
+bool is_turn_to_move(std::size_t index, std::int64_t frame_number, const SessionConfig& config) {
+  const std::int64_t number = static_cast<std::int64_t>(index);
+  const std::int64_t pictures = config.picture_every_n_frames;
+  if (pictures == 1) return (frame_number + number) % config.move_every_n_frames == 0;
+  // Frames with a picture do not move objects. The same frames are left out if no pictures are made, so
+  // objects move the same with and without pictures.
+  const std::int64_t frame = frame_number % pictures;
+  const std::int64_t of_these = frame_number / pictures * (pictures - 1) + frame - 1;
+  return frame > 0 && (of_these + number) % config.move_every_n_frames == 0;
 }
 
 std::vector<FineRegion> fine_regions(std::span<const std::unique_ptr<VirtualObject>> objects) {
@@ -630,7 +662,6 @@ ContactCounts ObjectSet::move(double dt_s, std::int64_t frame_number, StageTimes
   const bool has_map = config_.scene.surfaces == SurfacePolicy::kMap;
   for (DueObject& one : due) {
     one.scene = scene_without(one.object);
-    one.is_undisturbed = has_map && is_undisturbed(*one.object, one.scene);
     one.bodies = bodies_in(one.scene, objects_, *one.object);
   }
   ContactCounts counts;

@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -15,9 +14,7 @@
 #include "app/objects/departure.hpp"
 #include "app/objects/object_notice.hpp"
 #include "app/objects/virtual_object.hpp"
-#include "app/physics/collision_queries.hpp"
 #include "app/physics/contact_system.hpp"
-#include "app/physics/depenetration.hpp"
 #include "app/physics/physics_config.hpp"
 #include "app/session/frame_scene.hpp"
 #include "app/session/object_overlap.hpp"
@@ -47,49 +44,9 @@ struct ContactCounts {
   std::array<int, kSurfaceKinds> by_kind{};  ///< contacts per kind of surface touched
 };
 
-/// A radar and the total duration of its queries. Refers to both, which must outlive it.
-struct TimedRadar {
-  Radar& radar;
-  std::atomic<double>& queries_ms;  ///< incremented by each query
-};
-
 /// Returns true if config.move_every_n_frames and config.picture_every_n_frames let the object with this
 /// index be advanced in this frame.
 bool is_turn_to_move(std::size_t index, std::int64_t frame_number, const SessionConfig& config);
-
-/// An object that is moved in this frame, and the surfaces and objects that it can touch.
-struct DueObject {
-  VirtualObject* object = nullptr;
-  double waited_s = 0.0;  ///< time since the object was last advanced; may exceed config.max_advance_s
-  std::vector<SceneTree> scene{};   ///< surfaces, then the other objects
-  bool is_undisturbed = false;      ///< see AdvancedBody::is_undisturbed
-  bool was_overlapped = false;      ///< out: a surface overlapped the object, which may have been shifted
-  std::vector<SceneBody> bodies{};  ///< body of each tree of the scene; null for surfaces
-};
-
-/// Returns the body of each tree of the object's scene. Entries of surfaces are null. The other objects must
-/// be the last trees of the scene.
-std::vector<SceneBody> bodies_in(const std::vector<SceneTree>& scene,
-                                 std::span<const std::unique_ptr<VirtualObject>> objects,
-                                 const VirtualObject& object);
-
-/// Returns true if nothing new can overlap the object: only physics has moved it to its pose, and no moving
-/// surface is within 25 cm.
-bool is_undisturbed(const VirtualObject& object, std::span<const SceneTree> scene);
-
-/// Advances the objects together; see advance_together(). A carried object moves at the velocity that reaches
-/// its target after waited_s. Gravity, friction and restitution do not act on a carried object. Obstacles
-/// stop it.
-///
-/// Within the call, the dynamic surfaces near an object move from their position in the last frame to their
-/// position in this frame. They move in steps of at most 15 mm, and push the object on the way. Hence a hand
-/// that moves by up to 15 cm per frame does not pass the object between two frames. An inferred back that
-/// engulfs the object (is_engulfed()) is left out of the object's scene.
-/// @param moving    this frame's surfaces; null: no surface is known to be dynamic
-/// @param contacts  buffers; keeps impulses as initial guesses for a next call with the same objects
-/// @param counts    incremented by the contacts of this call
-void advance_objects(std::span<DueObject> due, const FrameScene* moving, const PhysicsConfig& config,
-                     const TimedRadar& timed, ContactSystem& contacts, ContactCounts& counts);
 
 /// Returns one ball around each object in the room. Inside the balls, the dynamic mesh gets full resolution.
 std::vector<FineRegion> fine_regions(std::span<const std::unique_ptr<VirtualObject>> objects);
@@ -259,7 +216,7 @@ class ObjectSet {
   std::unique_ptr<PassesRadar> passes_;  ///< moves the objects instead of radar_ in RadarMode::kPasses
   std::uint64_t tested_before_ = 0;  ///< static triangles tested before the last set_radar()
   std::vector<ObjectNotice> notices_;
-  ContactSystem contact_system_;  ///< buffers of advance_objects()
+  ContactSystem contact_system_;  ///< buffers of move()
   CyberRadar exact_radar_;        ///< used for drops, moves out of surfaces, and penetration_m()
 
   VirtualObject& named(const std::string& name);
