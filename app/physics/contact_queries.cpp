@@ -9,7 +9,7 @@ namespace {
 
 /// Sets `near` of a body to all features. Returns the kinds of surfaces that intersect the body.
 SurfaceKindMask query_near(MovingBody& moving, double reach_m, const TreeStates& trees) {
-  return moving.probe->near(moving.body->T_world_object, reach_m, moving.left_out, trees, moving.near);
+  return moving.probe.near(moving.body.T_world_object, reach_m, moving.left_out, trees, moving.near);
 }
 
 /// Updates `near` of a body that has not moved: queries only the bodies that have moved.
@@ -29,7 +29,7 @@ SurfaceKindMask query_moved(MovingBody& moving, double reach_m, const std::vecto
   if (!is_any) return 0;
   std::vector<ClosestPoint> found;
   const SurfaceKindMask crossed =
-      moving.probe->near(moving.body->T_world_object, reach_m, moving.left_out, trees, found);
+      moving.probe.near(moving.body.T_world_object, reach_m, moving.left_out, trees, found);
   moving.near.insert(moving.near.end(), found.begin(), found.end());
   return crossed;
 }
@@ -39,7 +39,7 @@ SurfaceKindMask query_moved(MovingBody& moving, double reach_m, const std::vecto
 bool must_be_queried(const MovingBody& moving, double margin_m) {
   constexpr double kKeptWithin = 0.25;  // of the margin
   if (!is_active(moving)) return moving.T_world_near.has_value();
-  return !moving.T_world_near || strayed_m(*moving.body, *moving.T_world_near) > kKeptWithin * margin_m;
+  return !moving.T_world_near || strayed_m(moving.body, *moving.T_world_near) > kKeptWithin * margin_m;
 }
 
 /// Returns true if one of the points equals the point, within rounding. A contact nearby is not enough: while
@@ -67,10 +67,10 @@ void add_limit(std::span<MovingBody> bodies, MovingBody& moving, double margin_m
 /// Makes the contacts of a sleeping body known. Returns false if they are not reliable: its support is not a
 /// surface at rest, or a surface intersects it. Such a body does not move by the weight of others.
 bool know_contacts(MovingBody& sleeper, double reach_m, ContactSystem& system) {
-  if (is_moving_surface(sleeper.body->rests_on)) return false;
-  const Body& body = *sleeper.body;
-  const std::span<const SceneBody> others = sleeper.probe->others;
-  if (sleeper.is_undisturbed && recall_contacts(system.sleepers, body, others, sleeper.near)) return true;
+  if (is_moving_surface(sleeper.body.rests_on)) return false;
+  const Body& body = sleeper.body;
+  const std::span<const SceneBody> others = sleeper.probe.others;
+  if (sleeper.in.is_undisturbed && recall_contacts(system.sleepers, body, others, sleeper.near)) return true;
   if (query_near(sleeper, reach_m, {}) != 0) return false;
   remember_contacts(system.sleepers, body, others, sleeper.near);
   return true;
@@ -109,7 +109,7 @@ std::vector<std::size_t> query_active(std::span<MovingBody> bodies, double margi
     if (!is_active(bodies[i]))
       bodies[i].T_world_near.reset();
     else if (has_moved[i])
-      bodies[i].T_world_near = bodies[i].body->T_world_object;
+      bodies[i].T_world_near = bodies[i].body.T_world_object;
   }
   return active;
 }
@@ -127,7 +127,7 @@ std::vector<bool> query_contacts(std::span<MovingBody> bodies, const PhysicsConf
   const auto reach_others_of = [&](const MovingBody& moving) {
     for (const ClosestPoint& p : moving.near) {
       const std::size_t other = member_of(moving, p);
-      if (other == kNoOther || !bodies[other].body->asleep || is_reached[other]) continue;
+      if (other == kNoOther || !bodies[other].body.asleep || is_reached[other]) continue;
       is_reached[other] = true;
       reached.push_back(other);
     }

@@ -38,7 +38,7 @@ const FittedPlane& plane_about(const ClosestPoint& p, double reach_m, MovingBody
         patch.plane.normal_world.dot(p.normal_world) > kSameFacing)
       return patch.plane;
   moving.patches.push_back(
-      {p.tree, p.point_world, moving.probe->patch(p.tree, p.point_world, p.normal_world, reach_m)});
+      {p.tree, p.point_world, moving.probe.patch(p.tree, p.point_world, p.normal_world, reach_m)});
   return moving.patches.back().plane;
 }
 
@@ -54,7 +54,7 @@ bool patch_contact(MovingBody& moving, const ClosestPoint& p, const PhysicsConfi
   constexpr double kNarrow = 0.25;      // of the reach: too narrow for a plane
   constexpr double kLongest_m = 0.1;    // of a round body's radius
   constexpr double kSame = 1.0 - 1e-9;  // on a flat surface, features keep their normals
-  if (p.kind != SurfaceKind::kStatic || !moving.probe->patch || !(config.patch_reach_m > 0.0)) return false;
+  if (p.kind != SurfaceKind::kStatic || !moving.probe.patch || !(config.patch_reach_m > 0.0)) return false;
   const FittedPlane& patch = plane_about(p, config.patch_reach_m, moving);
   const double cosine = patch.normal_world.dot(p.normal_world);
   if (!(cosine > kSteepest) || cosine > kSame) return false;
@@ -71,24 +71,24 @@ bool patch_contact(MovingBody& moving, const ClosestPoint& p, const PhysicsConfi
 void add_contacts(std::span<MovingBody> bodies, std::size_t index, const std::vector<bool>& is_listed,
                   const PhysicsConfig& config, ContactSystem& system) {
   MovingBody& moving = bodies[index];
-  const Vec3 centre = centre_world(*moving.body);
+  const Vec3 centre = centre_world(moving.body);
   for (const ClosestPoint& p : moving.near) {
     SolverContact contact;
     contact.body = index;
     contact.contact_offset_m = p.point_world + p.gap_m * p.normal_world - centre;
     contact.normal = p.normal_world;
-    const BodyMaterial& material = moving.body->material;
-    Coefficients coefficients = moving.is_carried ? Coefficients{} : on_room(material, config);
-    if (const Body* other = body_of(moving.probe->others, p)) {
+    const BodyMaterial& material = moving.body.material;
+    Coefficients coefficients = moving.in.is_carried ? Coefficients{} : on_room(material, config);
+    if (const Body* other = body_of(moving.probe.others, p)) {
       contact.other = member_of(moving, p);
       if (contact.other == kNoOther)
-        contact.other = bystander_index(bodies, moving.probe->others[p.tree], moving.mass_kg, system);
+        contact.other = bystander_index(bodies, moving.probe.others[p.tree], moving.in.mass_kg, system);
       // Bodies are listed upwards, moving ones before sleeping ones; a sleeping body's features may be older.
       const bool is_limit = p.point_world == moving.limited_by.point_world;  // known to be in no other list
       if (contact.other < bodies.size() && is_listed[contact.other] && !is_limit) continue;
       contact.other_offset_m = p.point_world - centre_world(*other);
       // The hand that carries an object has no friction of its own.
-      if (!moving.is_carried || (contact.other < bodies.size() && !bodies[contact.other].is_carried))
+      if (!moving.in.is_carried || (contact.other < bodies.size() && !bodies[contact.other].in.is_carried))
         coefficients = between(material, other->material, config);
     }
     contact.friction = coefficients.friction;
@@ -106,7 +106,7 @@ void add_contacts(std::span<MovingBody> bodies, std::size_t index, const std::ve
     contact.body = index;
     contact.contact_offset_m = push.point_world - centre;
     contact.normal = push.normal_world;
-    contact.friction = on_room(moving.body->material, config).friction;
+    contact.friction = on_room(moving.body.material, config).friction;
     system.features.push_back({contact.normal, contact.contact_offset_m});
     system.gap_m.push_back(0.0);
     system.kinds.push_back(push.touched);
@@ -115,7 +115,7 @@ void add_contacts(std::span<MovingBody> bodies, std::size_t index, const std::ve
 }
 
 double inverse_mass_per_kg(const MovingBody& moving) {
-  return 1.0 / ((moving.is_carried ? kCarried : 1.0) * moving.mass_kg);
+  return 1.0 / ((moving.in.is_carried ? kCarried : 1.0) * moving.in.mass_kg);
 }
 
 /// Returns true if something hits the body of this solver index faster than kNudge_mps.
@@ -136,11 +136,6 @@ WorkerThread* worker_for(std::size_t queried_bodies, ContactSystem& system) {
   return system.worker.get();
 }
 
-bool is_active(const MovingBody& moving) {
-  constexpr double kNoTime_s = 1e-12;
-  return !moving.body->asleep && !moving.crosses && moving.left_s > kNoTime_s;
-}
-
 void find_contacts(std::span<MovingBody> bodies, const PhysicsConfig& config, const Eigen::Vector3d& up_world,
                    ContactSystem& system) {
   system.contacts.clear();
@@ -150,18 +145,18 @@ void find_contacts(std::span<MovingBody> bodies, const PhysicsConfig& config, co
   system.push.clear();
   system.bodies.clear();
   system.bystanders.clear();
-  for (const MovingBody& moving : bodies) system.bodies.push_back(solver_body(*moving.body));
+  for (const MovingBody& moving : bodies) system.bodies.push_back(solver_body(moving.body));
   // Upwards, so that one sweep of the solver carries weight down to the lowest body.
   system.upwards.resize(bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) system.upwards[i] = i;
   std::stable_sort(system.upwards.begin(), system.upwards.end(), [&](std::size_t a, std::size_t b) {
-    return centre_world(*bodies[a].body).dot(up_world) < centre_world(*bodies[b].body).dot(up_world);
+    return centre_world(bodies[a].body).dot(up_world) < centre_world(bodies[b].body).dot(up_world);
   });
   const std::vector<bool> is_reached = query_contacts(bodies, config, system);
   std::vector<bool> is_listed(bodies.size());
   for (const bool lists_sleeping : {false, true})
     for (const std::size_t i : system.upwards) {
-      const bool is_known_sleeper = bodies[i].body->asleep && is_reached[i] && bodies[i].contacts_known;
+      const bool is_known_sleeper = bodies[i].body.asleep && is_reached[i] && bodies[i].contacts_known;
       if (lists_sleeping ? !is_known_sleeper : !is_active(bodies[i])) continue;
       add_contacts(bodies, i, is_listed, config, system);
       is_listed[i] = true;
@@ -177,7 +172,7 @@ double left_s(std::span<const MovingBody> bodies, const SolverContact& contact) 
 void set_masses(std::span<const MovingBody> bodies, Movable movable, ContactSystem& system) {
   for (SolverBody& body : system.bodies) body.inverse_mass_per_kg = 0.0;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const bool is_known_sleeper = bodies[i].body->asleep && bodies[i].contacts_known;
+    const bool is_known_sleeper = bodies[i].body.asleep && bodies[i].contacts_known;
     if (is_active(bodies[i]) || (movable == Movable::kActiveAndKnownSleepers && is_known_sleeper))
       system.bodies[i].inverse_mass_per_kg = inverse_mass_per_kg(bodies[i]);
   }
@@ -190,7 +185,7 @@ void set_masses_for_impacts(std::span<const MovingBody> bodies, std::span<const 
   };
   for (std::size_t i = 0; i < bodies.size(); ++i)
     system.bodies[i].inverse_mass_per_kg =
-        takes_part(*bodies[i].body, i) ? inverse_mass_per_kg(bodies[i]) : 0.0;
+        takes_part(bodies[i].body, i) ? inverse_mass_per_kg(bodies[i]) : 0.0;
   for (std::size_t i = 0; i < system.bystanders.size(); ++i) {
     const Bystander& bystander = system.bystanders[i];
     const std::size_t index = bodies.size() + i;
@@ -222,8 +217,8 @@ void guess_impulses(std::span<const MovingBody> bodies, double scale, ContactSys
     contact.impulse_Ns = 0.0;
     contact.friction_impulse_Ns.setZero();
     if (contact.other != kNoOther && contact.other >= bodies.size()) continue;
-    const Body* body = bodies[contact.body].body;
-    const Body* other = contact.other == kNoOther ? nullptr : bodies[contact.other].body;
+    const Body* body = &bodies[contact.body].body;
+    const Body* other = contact.other == kNoOther ? nullptr : &bodies[contact.other].body;
     const Vec3 point_world = centre_world(*body) + contact.contact_offset_m;
     std::size_t nearest = system.past.size();
     double nearest_m = kSame_m;
@@ -249,8 +244,8 @@ void keep_impulses(std::span<const MovingBody> bodies, double scale, ContactSyst
   for (const SolverContact& contact : system.contacts) {
     if (!(contact.impulse_Ns > 0.0) || (contact.other != kNoOther && contact.other >= bodies.size()))
       continue;
-    const Body* body = bodies[contact.body].body;
-    system.past.push_back({body, contact.other == kNoOther ? nullptr : bodies[contact.other].body,
+    const Body* body = &bodies[contact.body].body;
+    system.past.push_back({body, contact.other == kNoOther ? nullptr : &bodies[contact.other].body,
                            centre_world(*body) + contact.contact_offset_m, contact.normal,
                            scale * contact.impulse_Ns, scale * contact.friction_impulse_Ns});
   }

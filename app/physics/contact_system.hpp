@@ -2,76 +2,18 @@
 // solver.
 #pragma once
 #include <cstddef>
-#include <cstdint>
-#include <functional>
 #include <memory>
-#include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "app/physics/body.hpp"
-#include "app/physics/collision_queries.hpp"
 #include "app/physics/contact_solver.hpp"
+#include "app/physics/moving_body.hpp"
 #include "app/physics/physics_config.hpp"
 #include "app/physics/sleeper_contacts.hpp"
 #include "mapping/types/system/worker_thread.hpp"
 
 namespace roomradar {
-
-/// A contact at which a dynamic surface pushes the body throughout a step. Until the push ends, dynamic
-/// surfaces intersect the body, so the step ignores all other contacts with them.
-struct Push {
-  Eigen::Vector3d point_world = Eigen::Vector3d::Zero();
-  Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();  ///< unit, towards the body
-  /// Min speed of the body at point_world along the normal. Negative: the body may approach the surface, at
-  /// up to -speed_mps.
-  double speed_mps = 0.0;
-  SurfaceKind touched = SurfaceKind::kDynamic;
-};
-
-/// Dynamic surfaces and their inferred backs.
-inline constexpr SurfaceKindMask kMovingSurfaces =
-    bit_of(SurfaceKind::kDynamic) | bit_of(SurfaceKind::kInferredBack);
-constexpr bool is_moving_surface(SurfaceKind kind) { return (bit_of(kind) & kMovingSurfaces) != 0; }
-
-/// Plane fitted to a tree of the scene about a point.
-struct PatchPlane {
-  std::uint32_t tree = 0;
-  Eigen::Vector3d point_world = Eigen::Vector3d::Zero();
-  FittedPlane plane;
-};
-
-/// A body in a substep, with its progress.
-struct MovingBody {
-  Body* body = nullptr;
-  const CollisionQueries* probe = nullptr;
-  double mass_kg = 1.0;
-  bool is_carried = false;       ///< moves without gravity, friction and restitution
-  std::vector<Push> pushes{};    ///< pushes by dynamic surfaces that overlap the body
-  SurfaceKindMask left_out = 0;  ///< kinds excluded from the contacts, because they push or grip the body
-  StepReport* report = nullptr;  ///< the substep adds its contacts
-  double dt_s = 0.0;             ///< length of the substep
-  /// Called after each change of the body's pose, to update the other bodies' scenes. May be null.
-  const std::function<void()>* moved = nullptr;
-  /// True if nothing but the bodies of the call has moved near the body since its last substep.
-  bool is_undisturbed = false;
-  /// Per tree of the probe's scene: index of the tree's body among the substep's bodies; kNoOther if it has
-  /// none.
-  std::vector<std::size_t> member_of_tree{};
-
-  double left_s = 0.0;  ///< time of the substep that remains to be simulated
-  /// A surface other than the pushing one intersects the body. The contact solver then does not move it.
-  bool crosses = false;
-  ClosestPoint limited_by{};          ///< feature that ended the body's last motion
-  int stops_in_place = 0;             ///< motions in this substep that hardly moved the body
-  bool contacts_known = false;        ///< sleeping bodies: contacts are in the system
-  std::vector<ClosestPoint> near{};   ///< closest features at its pose
-  std::vector<PatchPlane> patches{};  ///< fitted in this call
-  std::size_t near_found = 0;  ///< size of `near` without the feature that ended the body's last motion
-  /// Pose at which the body's features were queried in this substep; unset if they were not.
-  std::optional<Eigen::Isometry3d> T_world_near{};
-};
 
 /// A body in the scene that is not advanced in this substep.
 struct Bystander {
@@ -117,9 +59,6 @@ struct ContactSystem {
 
 /// Returns the worker for the queries of this number of bodies; null if one thread is as fast.
 WorkerThread* worker_for(std::size_t queried_bodies, ContactSystem& system);
-
-/// Returns true if the body is awake, has time left in the substep, and no surface intersects it.
-bool is_active(const MovingBody& moving);
 
 /// Finds the contacts within 1.5 contact margins of all active bodies. Adds those of sleeping bodies in the
 /// same connected component. Leaves out sleeping bodies that rest on a dynamic surface or that a surface

@@ -2,9 +2,11 @@
 #include "app/physics/physics.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
+#include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include "app/physics/depenetration.hpp"
 #include "app/physics/rigid_motion.hpp"
@@ -34,204 +36,208 @@ PhysicsConfig physics_of(const AdvancedBody& advanced, PhysicsConfig config) {
   return config;
 }
 
-/// The part of advance_together() that concerns a single body.
-class Stepper {
- public:
-  Stepper(AdvancedBody& advanced, const PhysicsConfig& config)
-      : advanced_(advanced),
-        body_(*advanced.body),
-        probe_(*advanced.probe),
-        config_(physics_of(advanced, config)),
-        report_(advanced.report) {
-    const double g = config_.gravity_world_mps2.norm();
-    if (g > 0.0) down_ = config_.gravity_world_mps2 / g;
-  }
+/// Returns true if a query of the body gave no usable result; query_travel() says so in the report.
+bool has_failed(const AdvancedBody& advanced) { return advanced.report.status == StepStatus::kHeld; }
 
-  /// Queries below the body, and moves it out of surfaces that entered it, along the shortest of gravity and
-  /// the given directions.
-  void leave_overlaps(double dt_s, std::span<const Vec3> depenetration_directions_world);
-
-  /// Returns true if the support found by leave_overlaps() still holds the body, within noise.
-  [[nodiscard]] bool is_held_up() const;
-  /// Returns true if a body in contact when this one fell asleep has moved or disappeared.
-  [[nodiscard]] bool has_lost_a_neighbour() const;
-
-  /// Wakes the body unless it can stay asleep.
-  void wake_if_due();
-  /// Ends a substep: moves a body that a surface crosses, and may put the body to sleep.
-  void end_substep(const MovingBody& moved, const SubstepResult& result);
-
-  void wake();
-  [[nodiscard]] bool failed() const { return report_.status == StepStatus::kHeld; }
-  [[nodiscard]] const std::vector<Push>& pushes() const { return pushes_; }
-
- private:
-  Contact ask(const Vec3& direction, double distance_m) {
-    return query_travel(body_, direction, distance_m, probe_, report_);
-  }
-  /// Returns the kinds of surfaces that crossed the body before any motion.
-  SurfaceKindMask crossed_before();
-  /// Returns true if the overlap is only a surface between the body's parts, as in a handle, that crosses
-  /// none of them.
-  [[nodiscard]] bool is_in_a_hollow(const DirectedOverlap& way);
-  /// Returns the depth of overlap that is allowed to remain. A sleeping body does not wait for a surface that
-  /// would be deeper in it than wake_overlap_m by the next call.
-  [[nodiscard]] double allowed_overlap_m(const DirectedOverlap& way, double dt_s) const;
-  static DirectedOverlap overlap_in(const Contact& contact, const Vec3& direction);
-  void update_sleep(double dt_s, const SubstepResult& result);
-  void tell_moved() const {
-    if (advanced_.moved) advanced_.moved();
-  }
-
-  AdvancedBody& advanced_;
-  Body& body_;
-  const CollisionQueries& probe_;
-  const PhysicsConfig config_;
-  StepReport& report_;
-  Vec3 down_ = Vec3::Zero();
-  Contact below_;                           // along gravity, before any motion
-  std::optional<SurfaceKindMask> crossed_;  // kinds that cross the body before any motion, once queried
-  std::vector<Push> pushes_;
-  std::vector<ClosestPoint> near_;
-};
-
-void Stepper::wake() {
-  if (!body_.asleep) return;
-  report_.woke = true;
-  body_.asleep = false;
+void wake_up(AdvancedBody& advanced) {
+  advanced.report.woke |= advanced.body->asleep;
+  advanced.body->asleep = false;
 }
 
-DirectedOverlap Stepper::overlap_in(const Contact& contact, const Vec3& direction) {
+DirectedOverlap overlap_in(const Contact& contact, const Vec3& direction) {
   if (contact.status != ContactStatus::kOverlap) return {};
   return {std::max(-contact.contact_distance_m, 0.0), direction, contact};
 }
 
-bool Stepper::is_in_a_hollow(const DirectedOverlap& way) {
-  const SurfaceKind kind = way.contact.touched;
-  if (way.depth_m <= config_.overlap_allowed_m || is_moving_surface(kind) || is_one_sided(kind)) return false;
-  return (crossed_before() & bit_of(kind)) == 0;
-}
+/// What is around a body before it moves.
+struct Around {
+  Contact below;        ///< along gravity; no contact without gravity
+  DirectedOverlap way;  ///< the least overlap along gravity and AdvancedBody::depenetration_directions_world
+};
 
-SurfaceKindMask Stepper::crossed_before() {
-  if (!crossed_) crossed_ = probe_.near(body_.T_world_object, kTouching_m, 0, {}, near_);
-  return *crossed_;
-}
-
-double Stepper::allowed_overlap_m(const DirectedOverlap& way, double dt_s) const {
-  if (!body_.asleep) return config_.overlap_allowed_m;
-  const double grows_m = is_moving_surface(way.contact.touched) ? advanced_.surface_speed_mps * dt_s : 0.0;
-  return std::max(config_.wake_overlap_m - grows_m, config_.overlap_allowed_m);
-}
-
-void Stepper::leave_overlaps(double dt_s, std::span<const Vec3> depenetration_directions_world) {
-  DirectedOverlap way;
+/// Queries what is around a body; see has_failed().
+Around look_around(AdvancedBody& advanced, const Vec3& down, const PhysicsConfig& physics) {
+  Around around;
+  std::optional<SurfaceKindMask> crossed;  // kinds that cross the body, once queried
+  // A surface between the body's parts, as in a handle, that crosses none of them is not an overlap.
+  const auto is_in_a_hollow = [&](const DirectedOverlap& way) {
+    const SurfaceKind kind = way.contact.touched;
+    if (way.depth_m <= physics.overlap_allowed_m || is_moving_surface(kind) || is_one_sided(kind))
+      return false;
+    std::vector<ClosestPoint> unused;
+    if (!crossed) crossed = advanced.probe->near(advanced.body->T_world_object, kTouching_m, 0, {}, unused);
+    return (*crossed & bit_of(kind)) == 0;
+  };
+  DirectedOverlap& way = around.way;
   const auto consider = [&](const DirectedOverlap& other) {
     if (!(other.depth_m > 0.0) || (way.depth_m > 0.0 && other.depth_m >= way.depth_m)) return;
     if (!is_in_a_hollow(other)) way = other;
   };
-  const auto look = [&](const Vec3& direction) {
-    if (!failed()) consider(overlap_in(ask(direction, config_.contact_margin_m), direction));
+  const auto ask = [&](const Vec3& direction, double distance_m) {
+    return query_travel(*advanced.body, direction, distance_m, *advanced.probe, advanced.report);
   };
-  if (!down_.isZero()) {
-    below_ = ask(down_, config_.wake_gap_m + 2.0 * config_.contact_margin_m);
-    consider(overlap_in(below_, down_));
+  const auto look = [&](const Vec3& direction) {
+    if (!has_failed(advanced)) consider(overlap_in(ask(direction, physics.contact_margin_m), direction));
+  };
+  if (!down.isZero()) {
+    around.below = ask(down, physics.wake_gap_m + 2.0 * physics.contact_margin_m);
+    consider(overlap_in(around.below, down));
   }
-  for (const Vec3& direction : depenetration_directions_world)
+  for (const Vec3& direction : advanced.depenetration_directions_world)
     if (direction.allFinite() && direction.norm() > 0.5) look(direction.normalized());
   // A wall that grazes the body's side overlaps deeply along gravity: test sideways before lifting the body
   // onto it.
-  if (way.depth_m > kDoubtful_m && way.direction_world == down_) {
-    const Vec3 across = down_.unitOrthogonal();
-    const Vec3 other_across = down_.cross(across);
+  if (way.depth_m > kDoubtful_m && way.direction_world == down) {
+    const Vec3 across = down.unitOrthogonal();
+    const Vec3 other_across = down.cross(across);
     for (const Vec3& direction : {across, Vec3(-across), other_across, Vec3(-other_across)}) look(direction);
   }
-  if (failed() || way.depth_m <= 0.0) return;
+  return around;
+}
 
-  report_.deepest_overlap_m = std::max(report_.deepest_overlap_m, way.depth_m);
+/// Returns the depth of overlap that is allowed to remain. A sleeping body does not wait for a surface that
+/// would be deeper in it than wake_overlap_m by the next call.
+double allowed_overlap_m(const MovingBody& moving, const DirectedOverlap& way, const PhysicsConfig& config) {
+  if (!moving.body.asleep) return config.overlap_allowed_m;
+  const double grows_m =
+      is_moving_surface(way.contact.touched) ? moving.in.surface_speed_mps * moving.dt_s : 0.0;
+  return std::max(config.wake_overlap_m - grows_m, config.overlap_allowed_m);
+}
+
+/// Moves a body out of the surface that overlaps it, at once or by pushes; see has_failed().
+void leave_overlap(MovingBody& moving, const DirectedOverlap& way, const Vec3& down,
+                   const PhysicsConfig& physics) {
+  Body& body = moving.body;
+  StepReport& report = moving.in.report;
+  report.deepest_overlap_m = std::max(report.deepest_overlap_m, way.depth_m);
   if (way.contact.touched == SurfaceKind::kStatic)
-    report_.deepest_static_overlap_m = std::max(report_.deepest_static_overlap_m, way.depth_m);
-  if (way.depth_m <= allowed_overlap_m(way, dt_s)) return;
+    report.deepest_static_overlap_m = std::max(report.deepest_static_overlap_m, way.depth_m);
+  if (way.depth_m <= allowed_overlap_m(moving, way, physics)) return;
 
-  wake();
+  wake_up(moving.in);
   const double push_m =
-      std::min(way.depth_m + config_.contact_margin_m, config_.max_depenetration_mps * dt_s);
+      std::min(way.depth_m + physics.contact_margin_m, physics.max_depenetration_mps * moving.dt_s);
   if (is_moving_surface(way.contact.touched)) {
-    if (advanced_.is_gripped) return;
-    const bool is_out_at_once = way.direction_world == down_ && way.depth_m <= push_m;
-    if (!is_out_at_once) pushes_ = push_contacts(body_, way, push_m, dt_s, probe_, config_);
-    if (way.direction_world != down_) return;
+    if (moving.in.is_gripped) return;
+    const bool is_out_at_once = way.direction_world == down && way.depth_m <= push_m;
+    if (!is_out_at_once) moving.pushes = push_contacts(body, way, push_m, moving.dt_s, moving.probe, physics);
+    if (way.direction_world != down) return;
   }
   // A surface behind the body limits the push: the body stays squeezed until the next call.
-  const Contact behind = ask(-way.direction_world, push_m + config_.contact_margin_m);
-  if (failed()) return;
+  const Contact behind =
+      query_travel(body, -way.direction_world, push_m + physics.contact_margin_m, moving.probe, report);
+  if (has_failed(moving.in)) return;
   double free_m = push_m;
   if (behind.status == ContactStatus::kContact)
-    free_m = std::max(behind.lower_m - config_.contact_margin_m, 0.0);
+    free_m = std::max(behind.lower_m - physics.contact_margin_m, 0.0);
   if (behind.status == ContactStatus::kOverlap)  // hides surfaces farther along
-    free_m =
-        behind.touched == SurfaceKind::kStatic
-            ? 0.0
-            : free_past_overlaps_m(body_, -way.direction_world, push_m,
-                                   bit_of(way.contact.touched) | bit_of(behind.touched), probe_, config_);
-  body_.T_world_object.translation() -= std::min(push_m, free_m) * way.direction_world;
-  tell_moved();
-  const double inward_mps = body_.velocity_world_mps.dot(way.direction_world);
-  if (inward_mps > 0.0) body_.velocity_world_mps -= inward_mps * way.direction_world;
+    free_m = behind.touched == SurfaceKind::kStatic
+                 ? 0.0
+                 : free_past_overlaps_m(body, -way.direction_world, push_m,
+                                        bit_of(way.contact.touched) | bit_of(behind.touched), moving.probe,
+                                        physics);
+  body.T_world_object.translation() -= std::min(push_m, free_m) * way.direction_world;
+  show(moving);
+  const double inward_mps = body.velocity_world_mps.dot(way.direction_world);
+  if (inward_mps > 0.0) body.velocity_world_mps -= inward_mps * way.direction_world;
 }
 
-bool Stepper::is_held_up() const {
-  if (down_.isZero() || advanced_.is_undisturbed) return true;
-  return below_ && below_.lower_m <= config_.wake_gap_m + config_.contact_margin_m;
+/// Returns true if a body in contact when this one fell asleep has moved or disappeared.
+bool has_lost_a_neighbour(const MovingBody& moving, const PhysicsConfig& config) {
+  const std::span<const SceneBody> others = moving.probe.others;
+  return std::any_of(moving.body.supporting_bodies.begin(), moving.body.supporting_bodies.end(),
+                     [&](const Body::SupportingBody& leant) {
+                       const bool is_there =
+                           std::any_of(others.begin(), others.end(),
+                                       [&](const SceneBody& other) { return other.body == leant.on; });
+                       return !is_there || strayed_m(*leant.on, leant.T_world_other) > config.wake_moved_m;
+                     });
 }
 
-bool Stepper::has_lost_a_neighbour() const {
-  return std::any_of(
-      body_.supporting_bodies.begin(), body_.supporting_bodies.end(), [&](const Body::SupportingBody& leant) {
-        const bool is_there = std::any_of(probe_.others.begin(), probe_.others.end(),
-                                          [&](const SceneBody& other) { return other.body == leant.on; });
-        return !is_there || strayed_m(*leant.on, leant.T_world_other) > config_.wake_moved_m;
-      });
+/// Moves a body out of surfaces that entered it, along the least overlap, and wakes it unless it can stay
+/// asleep; see has_failed().
+void begin_step(MovingBody& moving, const PhysicsConfig& config) {
+  AdvancedBody& in = moving.in;
+  const PhysicsConfig physics = physics_of(in, config);
+  const double g = physics.gravity_world_mps2.norm();
+  const Vec3 down = g > 0.0 ? Vec3(physics.gravity_world_mps2 / g) : Vec3::Zero();
+  bool is_held_up = true;  // by the surface below, within noise
+  if (!in.is_undisturbed) {
+    const Around around = look_around(in, down, physics);
+    if (!has_failed(in) && around.way.depth_m > 0.0) leave_overlap(moving, around.way, down, physics);
+    if (has_failed(in)) return;
+    is_held_up = down.isZero() ||
+                 (around.below && around.below.lower_m <= physics.wake_gap_m + physics.contact_margin_m);
+  }
+  const bool is_still =
+      moving.body.velocity_world_mps.isZero() && moving.body.angular_velocity_world_rad_s.isZero();
+  const bool stays_asleep =
+      moving.body.asleep && is_still && is_held_up && !has_lost_a_neighbour(moving, config);
+  if (!stays_asleep) wake_up(in);
+  if (!moving.pushes.empty() || in.is_gripped) moving.left_out = kMovingSurfaces;
 }
 
 /// Advances the sleep timer of a supported body, and puts it to sleep when it expires. An unbalanced body
 /// takes longer, since it may be about to tip.
-void Stepper::update_sleep(double dt_s, const SubstepResult& result) {
+void update_sleep(MovingBody& moving, bool is_balanced, const PhysicsConfig& config) {
   constexpr double kLongerUnbalanced = 4.0;
-  if (body_.sleep_timer_s <= 0.0 ||
-      !(strayed_m(body_, body_.sleep_pose_candidate) <= config_.sleep_drift_m)) {
-    body_.sleep_pose_candidate = body_.T_world_object;
-    body_.sleep_timer_s = 0.0;
+  Body& body = moving.body;
+  if (body.sleep_timer_s <= 0.0 || !(strayed_m(body, body.sleep_pose_candidate) <= config.sleep_drift_m)) {
+    body.sleep_pose_candidate = body.T_world_object;
+    body.sleep_timer_s = 0.0;
   }
-  body_.sleep_timer_s += dt_s;
-  if (body_.sleep_timer_s < config_.sleep_after_s * (result.is_balanced ? 1.0 : kLongerUnbalanced)) return;
-  body_.asleep = true;
-  body_.supporting_bodies.clear();
-  for (const Body* other : result.touches) body_.supporting_bodies.push_back({other, other->T_world_object});
-  body_.sleep_timer_s = 0.0;  // the timer restarts when the body is set in motion again
-  body_.velocity_world_mps.setZero();
-  body_.angular_velocity_world_rad_s.setZero();
+  body.sleep_timer_s += moving.dt_s;
+  if (body.sleep_timer_s < config.sleep_after_s * (is_balanced ? 1.0 : kLongerUnbalanced)) return;
+  body.asleep = true;
+  body.supporting_bodies.clear();
+  for (const Body* other : moving.result.touches)
+    body.supporting_bodies.push_back({other, other->T_world_object});
+  body.sleep_timer_s = 0.0;  // the timer restarts when the body is set in motion again
+  body.velocity_world_mps.setZero();
+  body.angular_velocity_world_rad_s.setZero();
 }
 
-void Stepper::wake_if_due() {
-  const bool is_still = body_.velocity_world_mps.isZero() && body_.angular_velocity_world_rad_s.isZero();
-  if (!(body_.asleep && is_still && is_held_up() && !has_lost_a_neighbour())) wake();
-}
-
-void Stepper::end_substep(const MovingBody& moved, const SubstepResult& result) {
-  advanced_.near = moved.near;
-  if (moved.crosses) {
-    SubstepResult supported = result;
-    supported.is_balanced = true;
-    if (slide(body_, moved.left_s, probe_, config_, report_)) update_sleep(moved.dt_s, supported);
-    tell_moved();
+/// Ends the substep of a body that was awake: moves it if a surface crosses it, and may put it to sleep;
+/// see has_failed().
+void end_substep(MovingBody& moving, const PhysicsConfig& config) {
+  moving.in.near = moving.near;
+  if (moving.crosses) {
+    const PhysicsConfig physics = physics_of(moving.in, config);
+    if (slide(moving.body, moving.left_s, moving.probe, physics, moving.in.report))
+      update_sleep(moving, true, config);
+    show(moving);
     return;
   }
-  if (result.is_held_up) {
-    body_.rests_on = result.rests_on;
-    if (pushes_.empty()) update_sleep(moved.dt_s, result);
-  } else {
-    body_.rests_on = SurfaceKind::kNothing;
+  moving.body.rests_on = moving.result.is_held_up ? moving.result.rests_on : SurfaceKind::kNothing;
+  if (moving.result.is_held_up && moving.pushes.empty())
+    update_sleep(moving, moving.result.is_balanced, config);
+}
+
+using BodyIndex = std::unordered_map<const Body*, std::size_t>;
+
+/// Returns, per body, its trees in the scenes of the others.
+std::vector<std::vector<TreeInstance*>> seen_in_scenes(std::span<const AdvancedBody> bodies) {
+  BodyIndex index_of;
+  for (std::size_t i = 0; i < bodies.size(); ++i) index_of.emplace(bodies[i].body, i);
+  std::vector<std::vector<TreeInstance*>> seen_as(bodies.size());
+  for (const AdvancedBody& viewer : bodies) {
+    const std::span<const SceneBody> others = viewer.probe->others;
+    for (std::size_t tree = 0; tree < std::min(viewer.scene.size(), others.size()); ++tree)
+      if (const auto seen = index_of.find(others[tree].body); seen != index_of.end())
+        seen_as[seen->second].push_back(&viewer.scene[tree].instance);
   }
+  return seen_as;
+}
+
+/// Sets MovingBody::member_of_tree.
+void find_members(std::span<MovingBody> bodies) {
+  BodyIndex index_of;
+  for (std::size_t i = 0; i < bodies.size(); ++i) index_of.emplace(&bodies[i].body, i);
+  for (MovingBody& moving : bodies)
+    for (const SceneBody& other : moving.probe.others) {
+      const auto member = index_of.find(other.body);
+      moving.member_of_tree.push_back(member == index_of.end() ? kNoOther : member->second);
+    }
 }
 
 }  // namespace
@@ -242,58 +248,36 @@ double max_push_mps(const AdvancedBody& advanced, const PhysicsConfig& config) {
 }
 
 void advance_together(std::span<AdvancedBody> bodies, const PhysicsConfig& config, ContactSystem& system) {
-  std::vector<Stepper> steppers;
-  steppers.reserve(bodies.size());
+  std::vector<std::vector<TreeInstance*>> seen_as = seen_in_scenes(bodies);
   std::vector<MovingBody> moving;
+  moving.reserve(bodies.size());
   double longest_s = 0.0;
-  for (AdvancedBody& advanced : bodies) {
-    advanced.report = {};
-    if (!std::isfinite(advanced.dt_s) || advanced.dt_s < 0.0 || !is_finite(*advanced.body)) {
-      advanced.report.status = StepStatus::kInvalid;
-      continue;
-    }
-    if (advanced.dt_s == 0.0) continue;
-    const double dt_s = std::min(advanced.dt_s, config.max_advance_s);
-    Stepper& stepper = steppers.emplace_back(advanced, config);
-    if (!advanced.is_undisturbed) stepper.leave_overlaps(dt_s, advanced.depenetration_directions_world);
-    if (stepper.failed()) {
-      steppers.pop_back();
-      continue;
-    }
-    stepper.wake_if_due();
-    longest_s = std::max(longest_s, dt_s);
-    moving.push_back(
-        {.body = advanced.body,
-         .probe = advanced.probe,
-         .mass_kg = advanced.mass_kg,
-         .is_carried = advanced.is_carried,
-         .pushes = stepper.pushes(),
-         .left_out = !stepper.pushes().empty() || advanced.is_gripped ? kMovingSurfaces : SurfaceKindMask{0},
-         .report = &advanced.report,
-         .dt_s = dt_s,
-         .moved = &advanced.moved,
-         .is_undisturbed = advanced.is_undisturbed});
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    AdvancedBody& in = bodies[i];
+    in.report = {};
+    const bool is_valid = std::isfinite(in.dt_s) && in.dt_s >= 0.0 && is_finite(*in.body);
+    if (!is_valid) in.report.status = StepStatus::kInvalid;
+    if (!is_valid || in.dt_s == 0.0) continue;
+    const double dt_s = std::min(in.dt_s, config.max_advance_s);
+    moving.push_back({.in = in, .dt_s = dt_s, .seen_as = std::move(seen_as[i])});
+    begin_step(moving.back(), config);
+    if (has_failed(in))
+      moving.pop_back();
+    else
+      longest_s = std::max(longest_s, dt_s);
   }
-  for (MovingBody& one : moving)
-    for (const SceneBody& other : one.probe->others) {
-      const auto member = std::find_if(moving.begin(), moving.end(),
-                                       [&](const MovingBody& two) { return two.body == other.body; });
-      one.member_of_tree.push_back(
-          member == moving.end() ? kNoOther : static_cast<std::size_t>(member - moving.begin()));
-    }
+  find_members(moving);
   constexpr double kOver = 0.05;  // a Kinect's 33.37 ms are two substeps of 1/60 s, not three
   const int pieces = std::max(static_cast<int>(std::ceil(longest_s / config.max_step_s - kOver)), 1);
-  for (MovingBody& body : moving) body.dt_s /= pieces;
-  std::vector<SubstepResult> results;
-  for (int piece = 0; piece < pieces; ++piece) {
-    if (std::none_of(moving.begin(), moving.end(), [](const MovingBody& m) { return !m.body->asleep; }))
-      return;
-    std::vector<bool> was_asleep;
-    for (const MovingBody& body : moving) was_asleep.push_back(body.body->asleep);
-    simulate_substep(moving, config, system, results);
-    for (std::size_t i = 0; i < moving.size(); ++i) {
-      if (!was_asleep[i]) steppers[i].end_substep(moving[i], results[i]);
-      if (steppers[i].failed()) moving[i].dt_s = 0.0;  // stays where it is
+  for (MovingBody& one : moving) one.dt_s /= pieces;
+  const auto is_any_awake = [&] {
+    return std::any_of(moving.begin(), moving.end(), [](const MovingBody& one) { return !one.body.asleep; });
+  };
+  for (int piece = 0; piece < pieces && is_any_awake(); ++piece) {
+    simulate_substep(moving, config, system);
+    for (MovingBody& one : moving) {
+      if (!one.was_asleep) end_substep(one, config);
+      if (has_failed(one.in)) one.dt_s = 0.0;  // stays where it is
     }
   }
 }

@@ -1,47 +1,15 @@
 // physics.hpp: rigid-body motion of virtual objects; contacts are found by Cyber Radar queries.
 #pragma once
 #include <Eigen/Core>
-#include <functional>
 #include <span>
-#include <vector>
 
 #include "app/physics/body.hpp"
 #include "app/physics/collision_queries.hpp"
 #include "app/physics/contact_system.hpp"
+#include "app/physics/moving_body.hpp"
 #include "app/physics/physics_config.hpp"
-#include "radar/motion/closest_point.hpp"
 
 namespace roomradar {
-
-/// A body of a call of advance_together().
-struct AdvancedBody {
-  Body* body = nullptr;
-  /// Queries against a scene that contains all other bodies at their current poses; see `moved`.
-  const CollisionQueries* probe = nullptr;
-  double mass_kg = 1.0;  ///< > 0
-  /// A user carries the body: it moves at its given velocity, without gravity, friction and restitution.
-  /// Other bodies hardly slow it.
-  bool is_carried = false;
-  double dt_s = 0.0;  ///< time since the body was last advanced, >= 0; 0 changes nothing
-  /// No surface has moved near the body since it was last advanced, except bodies that were advanced with it.
-  /// Then nothing can overlap it, overlaps are not queried, and a sleeping body costs no computing time.
-  bool is_undisturbed = false;
-  /// Dynamic surfaces grip the body from two sides. The gripping surfaces may overlap the body, and do not
-  /// push it. The caller also sets is_carried, and the body's velocity to theirs.
-  bool is_gripped = false;
-  /// Speed of the dynamic surfaces near the body. The max speed at which they push the body is the larger of
-  /// 1.5 times this speed and PhysicsConfig::max_depenetration_mps.
-  double surface_speed_mps = 0.0;
-  /// Directions towards dynamic surfaces, see depenetration_directions(); may be empty.
-  std::span<const Eigen::Vector3d> depenetration_directions_world{};
-  /// Called after each change of the body's pose. Must update the scenes of the other bodies.
-  std::function<void()> moved{};
-  StepReport report{};  ///< out
-  /// Out: closest features within contact distance before the body's last motion. Unchanged while it sleeps.
-  /// The features of a pair of moving bodies are listed for one of the two only. ClosestPoint::tree is the
-  /// index of a tree in the probe's scene.
-  std::vector<ClosestPoint> near{};
-};
 
 /// Returns the max speed at which surfaces push the body or move it out of an overlap.
 double max_push_mps(const AdvancedBody& advanced, const PhysicsConfig& config);

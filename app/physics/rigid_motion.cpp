@@ -28,9 +28,9 @@ std::vector<PathBall> paths_of(std::span<const MovingBody> bodies, const std::ve
   std::vector<PathBall> paths(bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (!is_active(bodies[i])) continue;
-    const double radius_m = bodies[i].body->mass.radius_m;
+    const double radius_m = bodies[i].body.mass.radius_m;
     const double speed_mps = motions[i].linear_m_s.norm() + motions[i].angular_rad_s.norm() * radius_m;
-    paths[i] = {centre_world(*bodies[i].body), radius_m + speed_mps * bodies[i].left_s + margin_m};
+    paths[i] = {centre_world(bodies[i].body), radius_m + speed_mps * bodies[i].left_s + margin_m};
   }
   return paths;
 }
@@ -66,7 +66,7 @@ MovingSet::MovingSet(std::span<MovingBody> bodies, std::span<const std::size_t> 
   for (std::size_t k = 0; k < set.size(); ++k) {
     const std::size_t i = set[k];
     mover_of_[i] = k;
-    movers_.push_back({.T_world_object = &bodies[i].body->T_world_object,
+    movers_.push_back({.T_world_object = &bodies[i].body.T_world_object,
                        .motion = motions[i],
                        .duration_s = bodies[i].left_s,
                        .path = paths[i],
@@ -75,7 +75,7 @@ MovingSet::MovingSet(std::span<MovingBody> bodies, std::span<const std::size_t> 
                            [this, k](std::size_t stopped, double duration_s) {
                              return free_time_beside(k, stopped, duration_s);
                            },
-                       .moved = bodies[i].moved,
+                       .seen_as = bodies[i].seen_as,
                        .limited_by = {}});
   }
 }
@@ -103,8 +103,8 @@ JointMover::Free MovingSet::free_time(std::size_t mover, double duration_s) cons
     trees.left_out[tree] = other_spins > spins || (other_spins == spins && mover_of_[other] < mover);
     trees.motions[tree] = beside.motion;
   }
-  const FreeTime time = moving.probe->free_time(moving.body->T_world_object, motion, duration_s, keep_m_,
-                                                moving.left_out, trees);
+  const FreeTime time =
+      moving.probe.free_time(moving.body.T_world_object, motion, duration_s, keep_m_, moving.left_out, trees);
   const std::size_t limit =
       time.limit.kind == SurfaceKind::kNothing ? kNoOther : member_of(moving, time.limit);
   return {time, limit == kNoOther ? kNoMover : mover_of_[limit]};
@@ -119,8 +119,8 @@ double MovingSet::free_time_beside(std::size_t mover, std::size_t stopped, doubl
   for (std::size_t tree = 0; tree < moving.member_of_tree.size(); ++tree)
     trees.left_out[tree] = moving.member_of_tree[tree] != set_[stopped];
   return moving.probe
-      ->free_time(moving.body->T_world_object, motion, duration_s, keep_m_, ~bit_of(SurfaceKind::kObject),
-                  trees)
+      .free_time(moving.body.T_world_object, motion, duration_s, keep_m_, ~bit_of(SurfaceKind::kObject),
+                 trees)
       .free_s;
 }
 
@@ -160,20 +160,18 @@ struct Load {
   SurfaceKind any_kind = SurfaceKind::kNothing;
 };
 
-/// Sets is_held_up, rests_on and touches of each active body from the impulses of the support solve. A body
+/// Sets the result of each active body, except is_balanced, from the impulses of the support solve. A body
 /// is held up by surfaces within 60 degrees of level. A body is also held up if all contacts together bear at
 /// least 90 % of its weight, as at a keystone.
 /// @param up_world  unit, against gravity. Zero without gravity; then nothing is held up
-/// @param results   one per body, in order. Other fields are unchanged
-void note_support(std::span<const MovingBody> bodies, const PhysicsConfig& config,
-                  const Eigen::Vector3d& up_world, const ContactSystem& system,
-                  std::vector<SubstepResult>& results) {
+void note_support(std::span<MovingBody> bodies, const PhysicsConfig& config, const Eigen::Vector3d& up_world,
+                  const ContactSystem& system) {
   const double g = config.gravity_world_mps2.norm();
   std::vector<Load> loads(bodies.size());
   const auto note = [&](std::size_t body, const Body* other, const SolverContact& contact, double sign,
                         SurfaceKind kind) {
     if (body >= bodies.size() || !is_active(bodies[body])) return;
-    SubstepResult& result = results[body];
+    SubstepResult& result = bodies[body].result;
     if (other != nullptr &&
         std::find(result.touches.begin(), result.touches.end(), other) == result.touches.end())
       result.touches.push_back(other);
@@ -191,7 +189,7 @@ void note_support(std::span<const MovingBody> bodies, const PhysicsConfig& confi
   };
   const auto body_at = [&](std::size_t index) -> const Body* {
     if (index == kNoOther) return nullptr;
-    return index < bodies.size() ? bodies[index].body : system.bystanders[index - bodies.size()].body;
+    return index < bodies.size() ? &bodies[index].body : system.bystanders[index - bodies.size()].body;
   };
   for (std::size_t i = 0; i < system.contacts.size(); ++i) {
     const SolverContact& contact = system.contacts[i];
@@ -200,10 +198,11 @@ void note_support(std::span<const MovingBody> bodies, const PhysicsConfig& confi
   }
   constexpr double kBorne = 0.9;  // fraction of the weight
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const double weight_Ns = bodies[i].mass_kg * g * bodies[i].left_s;
-    if (results[i].is_held_up || !(loads[i].lift_Ns > kBorne * weight_Ns) || !(weight_Ns > 0.0)) continue;
-    results[i].is_held_up = true;
-    results[i].rests_on = loads[i].any_kind;
+    const double weight_Ns = bodies[i].in.mass_kg * g * bodies[i].left_s;
+    SubstepResult& result = bodies[i].result;
+    if (result.is_held_up || !(loads[i].lift_Ns > kBorne * weight_Ns) || !(weight_Ns > 0.0)) continue;
+    result.is_held_up = true;
+    result.rests_on = loads[i].any_kind;
   }
 }
 
@@ -220,7 +219,7 @@ void count_impacts(std::span<const MovingBody> bodies, const ContactSystem& syst
   }
   for (std::size_t i = 0; i < bodies.size(); ++i)
     for (std::size_t kind = 0; kind < kSurfaceKinds; ++kind)
-      if (is_met[i][kind]) note_contact(static_cast<SurfaceKind>(kind), *bodies[i].report);
+      if (is_met[i][kind]) note_contact(static_cast<SurfaceKind>(kind), bodies[i].in.report);
 }
 
 using Vec3 = Eigen::Vector3d;
@@ -253,9 +252,9 @@ double speed_of(const Body& body, const Velocity& velocity) {
 }
 
 void wake(MovingBody& sleeper) {
-  sleeper.body->asleep = false;
-  sleeper.body->unbalanced_s = 0.0;
-  sleeper.report->woke = true;
+  sleeper.body.asleep = false;
+  sleeper.body.unbalanced_s = 0.0;
+  sleeper.in.report.woke = true;
 }
 
 /// Velocities of the solver's bodies: of the substep's bodies, then of the bystanders.
@@ -266,9 +265,8 @@ using Velocities = std::vector<Velocity>;
 /// before they solve.
 class Substep {
  public:
-  Substep(std::span<MovingBody> bodies, const PhysicsConfig& config, ContactSystem& system,
-          std::vector<SubstepResult>& results)
-      : bodies_(bodies), config_(config), system_(system), results_(results) {}
+  Substep(std::span<MovingBody> bodies, const PhysicsConfig& config, ContactSystem& system)
+      : bodies_(bodies), config_(config), system_(system) {}
 
   void run();
 
@@ -276,7 +274,6 @@ class Substep {
   std::span<MovingBody> bodies_;
   const PhysicsConfig& config_;
   ContactSystem& system_;
-  std::vector<SubstepResult>& results_;
   const Vec3 up_ = -config_.gravity_world_mps2.stableNormalized();  // zero without gravity
 
   [[nodiscard]] bool is_movable(std::size_t solver_index) const {
@@ -312,30 +309,31 @@ class Substep {
 
 /// Resets what the bodies keep of the last substep, and limits their velocities.
 void Substep::begin() {
-  results_.assign(bodies_.size(), {});
   for (MovingBody& moving : bodies_) {
-    Velocity velocity = velocity_of(*moving.body);
+    Velocity velocity = velocity_of(moving.body);
     limit(velocity, config_);
-    set_velocity(*moving.body, velocity);
-    moving.left_s = moving.body->asleep ? 0.0 : moving.dt_s;
+    set_velocity(moving.body, velocity);
+    moving.was_asleep = moving.body.asleep;
+    moving.left_s = moving.was_asleep ? 0.0 : moving.dt_s;
     moving.crosses = false;
     moving.stops_in_place = 0;
     moving.limited_by = {};
     moving.T_world_near.reset();
+    moving.result = {};
   }
 }
 
 /// Returns the velocities of the solver's bodies.
 Velocities Substep::velocities() const {
   Velocities velocities;
-  for (const MovingBody& moving : bodies_) velocities.push_back(velocity_of(*moving.body));
+  for (const MovingBody& moving : bodies_) velocities.push_back(velocity_of(moving.body));
   for (const Bystander& bystander : system_.bystanders) velocities.push_back(velocity_of(*bystander.body));
   return velocities;
 }
 
 /// Sets the velocities of the solver's bodies.
 void Substep::set_velocities(const Velocities& velocities) const {
-  for (std::size_t i = 0; i < bodies_.size(); ++i) set_velocity(*bodies_[i].body, velocities[i]);
+  for (std::size_t i = 0; i < bodies_.size(); ++i) set_velocity(bodies_[i].body, velocities[i]);
   for (std::size_t i = 0; i < system_.bystanders.size(); ++i)
     set_velocity(*system_.bystanders[i].body, velocities[bodies_.size() + i]);
 }
@@ -351,7 +349,7 @@ std::optional<Velocities> Substep::bounce(const Velocities& velocities) {
     const double closing_mps = -slip_at(contact, velocities).dot(contact.normal);
     if (!(closing_mps > -contact.leaves_mps + 1e-9)) continue;
     enters = true;
-    const bool is_carried = bodies_[contact.body].is_carried && contact.other == kNoOther;
+    const bool is_carried = bodies_[contact.body].in.is_carried && contact.other == kNoOther;
     if (system_.push[i] != nullptr || is_carried || !(closing_mps > config_.bounce_mps)) continue;
     is_fast = true;
     contact.leaves_mps = contact.restitution * closing_mps;
@@ -376,7 +374,7 @@ bool Substep::wake_hit_sleepers() {
   bool woke = false;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     MovingBody& moving = bodies_[i];
-    if (!is_movable(i) || !moving.body->asleep) continue;
+    if (!is_movable(i) || !moving.body.asleep) continue;
     wake(moving);
     woke = true;
     moving.left_s = moving.dt_s;
@@ -392,8 +390,8 @@ Velocities Substep::hold_up(Velocities velocities, bool keeps_impulses) {
   double scale = 0.0;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const MovingBody& moving = bodies_[i];
-    if (moving.is_carried || !is_movable(i)) continue;
-    const double left_s = moving.body->asleep ? moving.dt_s : moving.left_s;
+    if (moving.in.is_carried || !is_movable(i)) continue;
+    const double left_s = moving.body.asleep ? moving.dt_s : moving.left_s;
     velocities[i].linear_mps += config_.gravity_world_mps2 * left_s;
     scale = std::max(scale, left_s);
   }
@@ -413,9 +411,9 @@ void Substep::wake_unbalanced_sleepers(const Velocities& after) {
   const double g = config_.gravity_world_mps2.norm();
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     MovingBody& moving = bodies_[i];
-    if (!moving.body->asleep) continue;
-    const double begins_mps2 = is_movable(i) ? speed_of(*moving.body, after[i]) / moving.dt_s : 0.0;
-    double& unbalanced_s = moving.body->unbalanced_s;
+    if (!moving.body.asleep) continue;
+    const double begins_mps2 = is_movable(i) ? speed_of(moving.body, after[i]) / moving.dt_s : 0.0;
+    double& unbalanced_s = moving.body.unbalanced_s;
     unbalanced_s = begins_mps2 < kSlow * g ? 0.0 : unbalanced_s + moving.dt_s;
     if (unbalanced_s >= kLasts_s || begins_mps2 >= kFast * g) wake(moving);  // moves from the next substep on
   }
@@ -428,11 +426,11 @@ void Substep::find_balanced(const Velocities& velocities) {
   constexpr double kSlow_mps = 0.3;
   bool is_any_slow = false;
   for (std::size_t i = 0; i < bodies_.size() && !is_any_slow; ++i)
-    is_any_slow = is_active(bodies_[i]) && speed_of(*bodies_[i].body, velocities[i]) < kSlow_mps;
+    is_any_slow = is_active(bodies_[i]) && speed_of(bodies_[i].body, velocities[i]) < kSlow_mps;
   if (!is_any_slow) return;
   Velocities falling = at_rest();
   for (std::size_t i = 0; i < bodies_.size(); ++i)
-    if (!bodies_[i].is_carried && is_movable(i))
+    if (!bodies_[i].in.is_carried && is_movable(i))
       falling[i].linear_mps = config_.gravity_world_mps2 * bodies_[i].dt_s;
   for (std::size_t i = 0; i < system_.contacts.size(); ++i)
     system_.contacts[i].leaves_mps = system_.push[i] != nullptr ? system_.push[i]->speed_mps : 0.0;
@@ -440,8 +438,8 @@ void Substep::find_balanced(const Velocities& velocities) {
   const Velocities held = solved(std::move(falling), config_.rolling);
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     if (!is_active(bodies_[i])) continue;
-    const double begins_mps2 = speed_of(*bodies_[i].body, held[i]) / bodies_[i].dt_s;
-    results_[i].is_balanced = begins_mps2 < kUnbalanced * config_.gravity_world_mps2.norm();
+    const double begins_mps2 = speed_of(bodies_[i].body, held[i]) / bodies_[i].dt_s;
+    bodies_[i].result.is_balanced = begins_mps2 < kUnbalanced * config_.gravity_world_mps2.norm();
   }
 }
 
@@ -527,7 +525,7 @@ std::vector<RigidMotion> Substep::motions(const Velocities& means, const Velocit
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const MovingBody& moving = bodies_[i];
     if (!is_active(moving)) continue;
-    const Body& body = *moving.body;
+    const Body& body = moving.body;
     RigidMotion motion;
     motion.centre_object = body.mass.centre_object;
     // A body that spins too fast moves slower as a whole: a contact that does not close then does not,
@@ -550,7 +548,7 @@ std::vector<RigidMotion> Substep::motions(const Velocities& means, const Velocit
 
 std::vector<Eigen::Matrix3d> Substep::inertias_m2() const {
   std::vector<Eigen::Matrix3d> inertias_m2;
-  for (const MovingBody& moving : bodies_) inertias_m2.push_back(inertia_world_m2(*moving.body));
+  for (const MovingBody& moving : bodies_) inertias_m2.push_back(inertia_world_m2(moving.body));
   return inertias_m2;
 }
 
@@ -594,7 +592,7 @@ Velocities Substep::velocities_after(const std::vector<double>& gone_s,
     Velocity& velocity = velocities[i];
     velocity.linear_mps += part * (after[i].linear_mps - velocity.linear_mps);
     velocity.angular_rad_s += part * (after[i].angular_rad_s - velocity.angular_rad_s);
-    velocity.angular_rad_s = spin_after(*moving.body, inertia_m2, velocity.angular_rad_s, is_touched[i]);
+    velocity.angular_rad_s = spin_after(moving.body, inertia_m2, velocity.angular_rad_s, is_touched[i]);
     limit(velocity, config_);
   }
   return velocities;
@@ -622,18 +620,18 @@ void Substep::settle(const Velocities& rises, const std::vector<double>& gone_s)
     const Velocity& rise = rises[i];
     if (!(gone_s[i] > 0.0) || (rise.linear_mps.isZero(0.0) && rise.angular_rad_s.isZero(0.0))) continue;
     const MovingBody& moving = bodies_[i];
-    Eigen::Isometry3d& T_world_object = moving.body->T_world_object;
-    const RigidMotion back{-rise.linear_mps, -rise.angular_rad_s, moving.body->mass.centre_object};
+    Eigen::Isometry3d& T_world_object = moving.body.T_world_object;
+    const RigidMotion back{-rise.linear_mps, -rise.angular_rad_s, moving.body.mass.centre_object};
     const double margin_m = config_.contact_margin_m, keep_m = 0.5 * margin_m;
     const auto [free_s, limit] =
-        moving.probe->free_time(T_world_object, back, gone_s[i], keep_m, moving.left_out, {});
+        moving.probe.free_time(T_world_object, back, gone_s[i], keep_m, moving.left_out, {});
     double back_s = free_s;
     if (limit.kind != SurfaceKind::kNothing)
       back_s *= std::max(limit.gap_m - margin_m, 0.0) / (limit.gap_m - keep_m);
     if (!(back_s > 0.0)) continue;
     T_world_object = pose_after(T_world_object, back, back_s);
     make_orthonormal(T_world_object);
-    if (moving.moved != nullptr && *moving.moved) (*moving.moved)();
+    show(moving);
   }
 }
 
@@ -653,7 +651,7 @@ void Substep::run() {
     const Velocities before = velocities();
     const Velocities after = hold_up(before, stop == 0);
     if (stop == 0) wake_unbalanced_sleepers(after);
-    note_support(bodies_, config_, up_, system_, results_);
+    note_support(bodies_, config_, up_, system_);
     if (stop == 0) find_balanced(before);
 
     const Velocities means = mean_velocities(before, after);
@@ -666,14 +664,13 @@ void Substep::run() {
     use_time(gone_s);
     settle(rising, gone_s);
   }
-  for (SubstepResult& result : results_) result.is_balanced &= result.is_held_up;
+  for (MovingBody& moving : bodies_) moving.result.is_balanced &= moving.result.is_held_up;
 }
 
 }  // namespace
 
-void simulate_substep(std::span<MovingBody> bodies, const PhysicsConfig& config, ContactSystem& system,
-                      std::vector<SubstepResult>& results) {
-  Substep(bodies, config, system, results).run();
+void simulate_substep(std::span<MovingBody> bodies, const PhysicsConfig& config, ContactSystem& system) {
+  Substep(bodies, config, system).run();
 }
 
 }  // namespace roomradar

@@ -250,20 +250,13 @@ void advance_objects(std::span<DueObject> due, const FrameScene* moving, const P
     one.probe.others = one.bodies;
     const bool is_left_alone = moving != nullptr && is_undisturbed(object, one.scene);
     if (moving != nullptr && !is_left_alone) one.sweep = sweep_near(object, *moving);
-    Body& body = object.body;
-    std::vector<SceneTree*> seen_as;  // in the scenes of the others
-    for (DueObject& other : due)
-      for (std::size_t i = 0; i < other.bodies.size(); ++i)
-        if (other.bodies[i].body == &body) seen_as.push_back(&other.scene[i]);
-    advanced.push_back({.body = &body,
+    advanced.push_back({.body = &object.body,
                         .probe = &one.probe,
+                        .scene = one.scene,
                         .mass_kg = object.body.mass.mass_kg,
                         .is_carried = object.carried_to_world.has_value(),
                         .is_undisturbed = is_left_alone,
-                        .surface_speed_mps = one.sweep.way_world.norm() / std::max(one.waited_s, 1e-9),
-                        .moved = [&body, seen_as = std::move(seen_as)] {
-                          for (SceneTree* tree : seen_as) tree->instance.T_world_mesh = body.T_world_object;
-                        }});
+                        .surface_speed_mps = one.sweep.way_world.norm() / std::max(one.waited_s, 1e-9)});
     pieces = std::max({pieces, pieces_of(one.waited_s, config), steps_of(one.sweep)});
   }
   for (int left = pieces; left > 0; --left) {

@@ -32,7 +32,7 @@ void move_to(JointMover& mover, const Progress& progress, double time_s) {
   Eigen::Isometry3d T = pose_after(T_world_start, motion, time_s);
   make_orthonormal(T);
   *mover.T_world_object = T;
-  if (mover.moved != nullptr && *mover.moved) (*mover.moved)();
+  for (TreeInstance* seen : mover.seen_as) seen->T_world_mesh = T;
 }
 
 /// Computes the time until which a mover is free of contact, and whether its motion ends then.

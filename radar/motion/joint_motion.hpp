@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mapping/types/system/worker_thread.hpp"
+#include "radar/geometry/radar_scene.hpp"
 #include "radar/motion/closest_point.hpp"
 #include "radar/motion/free_time.hpp"
 #include "radar/motion/time_of_impact.hpp"
@@ -40,8 +41,7 @@ struct JointMover {
   std::function<Free(double duration_s)> free_time;
   /// Returns the free time, s, with respect to the surfaces of one stopped mover only.
   std::function<double(std::size_t stopped, double duration_s)> free_time_beside;
-  /// Called after each change of the pose; may be null or empty.
-  const std::function<void()>* moved = nullptr;
+  std::span<TreeInstance* const> seen_as{};  ///< out: get each new pose: the body in other bodies' scenes
   double gone_s = 0.0;       ///< out: duration of the body's motion so far, s
   bool has_stopped = false;  ///< out: the motion has ended; valid during the call, too
   ClosestPoint limited_by;   ///< out: feature that ended the motion; kind kNothing if another body's did

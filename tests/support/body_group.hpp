@@ -70,16 +70,11 @@ class BodyGroup {
       probes[i].others = others[i];
       advanced.push_back({.body = &bodies[body],
                           .probe = &probes[i],
+                          .scene = scenes[i],
                           .mass_kg = mass_kg[body],
                           .is_carried = is_carried[body],
                           .dt_s = frame_s,
-                          .is_undisturbed = is_undisturbed[body],
-                          .moved = [&, i, n, body, surfaces] {
-                            for (std::size_t j = 0; j < n; ++j)
-                              if (j != i)
-                                scenes[j][surfaces + (i < j ? i : i - 1)].instance.T_world_mesh =
-                                    bodies[body].T_world_object;
-                          }});
+                          .is_undisturbed = is_undisturbed[body]});
     }
     advance_together(advanced, config, system);
     for (const AdvancedBody& one : advanced) deepest_m = std::max(deepest_m, one.report.deepest_overlap_m);

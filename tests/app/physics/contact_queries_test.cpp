@@ -33,8 +33,6 @@ class TwoBalls : public ::testing::Test {
           points.push_back({other + kRadius_m * from_other, from_other, apart_m, SurfaceKind::kObject, 1});
         return i == crossing_ ? bit_of(SurfaceKind::kStatic) : SurfaceKindMask{0};
       };
-      moving_[i].body = &bodies_[i];
-      moving_[i].probe = &probes_[i];
       moving_[i].dt_s = moving_[i].left_s = 1.0;
       moving_[i].member_of_tree = {kNoOther, 1 - i};
       bodies_[i].mass.radius_m = kRadius_m;
@@ -51,7 +49,9 @@ class TwoBalls : public ::testing::Test {
   PhysicsConfig config_;
   std::array<Body, 2> bodies_;
   std::array<CollisionQueries, 2> probes_;
-  std::array<MovingBody, 2> moving_;
+  std::array<AdvancedBody, 2> advanced_{
+      {{.body = &bodies_[0], .probe = &probes_[0]}, {.body = &bodies_[1], .probe = &probes_[1]}}};
+  std::array<MovingBody, 2> moving_{{{.in = advanced_[0]}, {.in = advanced_[1]}}};
   std::array<int, 2> queries_{};
   std::size_t crossing_ = kNoOther;  ///< the ball that a wall crosses
   ContactSystem system_;
