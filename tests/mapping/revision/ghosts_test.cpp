@@ -336,7 +336,7 @@ TEST(Ghosts, ASmallThingGoesIfMoreFramesSeeThroughItThanMeasureIt) {
   const auto ghosts_of = [](int frames_with_box) {
     return scan(FrameList(record(40,
                                  [=](int i) {
-                                   return i < frames_with_box
+                                   return i >= 40 - frames_with_box
                                               ? before_wall({-0.04, 1.2, -0.04}, {0.04, 1.28, 0.04})
                                               : wall();
                                  })))
