@@ -39,6 +39,7 @@ void require_valid(const GhostConfig& c) {
   require(c.min_extent_m >= 0.0F && std::isfinite(c.min_extent_m), "min_extent_m", c.min_extent_m, ">= 0");
   require(c.min_extent_mostly_through_m >= 0.0F && std::isfinite(c.min_extent_mostly_through_m),
           "min_extent_mostly_through_m", c.min_extent_mostly_through_m, ">= 0");
+  require(c.far_behind_m >= 0.0F && std::isfinite(c.far_behind_m), "far_behind_m", c.far_behind_m, ">= 0");
   require(c.max_looks >= 1 && c.max_looks <= 60'000, "max_looks", c.max_looks, "in 1..60000");
 }
 
@@ -466,9 +467,10 @@ void GhostVotes::look(const Frame& frame, const Eigen::Isometry3d& T_world_camer
     if (measured_m < z) return;
     const WindowDepth window = window_at();
     if (window.nearest_m - z > margin_m(window.nearest_m) &&
-        window.measured_share >= config_.min_measured_share)
+        window.measured_share >= config_.min_measured_share) {
       ++votes.through;
-    else if (measured_m - z > margin_m(measured_m))
+      if (window.nearest_m - z > config_.far_behind_m) ++votes.far_through;
+    } else if (measured_m - z > margin_m(measured_m))
       ++votes.glimpsed;
   };
   // The votes of different bricks are independent, so the bricks are shared among threads.
@@ -526,7 +528,7 @@ std::vector<GhostVotes::Fate> GhostVotes::fates() const {
   const std::vector<VotedVoxel> absent = find_absent(may_be_gone, absence_, min_voxels);
   std::vector<VotedVoxel> ghosts, sure;
   const auto mostly_through = those([this](const Votes& votes, const AbsenceVotes&) {
-    return votes.through >= config_.min_through && votes.through > votes.seen;
+    return votes.far_through >= config_.min_through && votes.far_through > votes.seen;
   });
   const double min_mostly_through = voxels_of(static_cast<double>(config_.min_extent_mostly_through_m));
   const std::vector<std::size_t> together = voxels_together(seen_through),

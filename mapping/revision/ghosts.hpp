@@ -40,9 +40,11 @@ struct GhostConfig {
   /// through is a ghost only if it has at least as many samples as the square. The square has two samples per
   /// voxel of area. Smaller components are tracking errors at the edges of static objects.
   float min_extent_m = 0.15F;
-  /// The same for samples that more frames see through than measure. Tracking errors at static edges do not
-  /// reach that share; small things that moved do, such as a part of the robot that carries the camera.
+  /// The same for samples through which more frames see something far behind (far_behind_m) than measure
+  /// them. Tracking errors at static edges do not reach that share; small things that moved do, such as a
+  /// part of the robot that carries the camera.
   float min_extent_mostly_through_m = 0.03F;
+  float far_behind_m = 0.3F;
   int max_looks = 170;  ///< max number of frames used, evenly spaced over the recording
 };
 
@@ -195,6 +197,7 @@ class GhostVotes {
     std::uint16_t occupied : 1 = 0;
     std::uint16_t seen = 0;
     std::uint16_t through = 0;
+    std::uint16_t far_through = 0;  // of these, frames whose depth is far behind the voxel
     // Number of frames that see through the voxel in its pixel, but not in the whole window.
     std::uint16_t glimpsed = 0;
   };
