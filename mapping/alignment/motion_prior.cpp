@@ -10,7 +10,7 @@ namespace roomradar {
 namespace {
 
 /// Standard deviation of an alignment's systematic errors (distortion of depth), m.
-constexpr double kAlignmentBias_m = 0.006;
+constexpr double kAlignmentBias_m = 0.004;
 constexpr double kLeastSigma_m = 0.0015;
 /// A difference of more than kOff_m plus kOffSigmas of the recorded poses' noise contradicts the prior.
 constexpr double kOff_m = 0.03, kOffSigmas = 5.0;

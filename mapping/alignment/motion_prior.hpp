@@ -55,7 +55,7 @@ std::optional<Eigen::Isometry3d> predicted_by(const MotionPrior& prior,
                                               const std::optional<Eigen::Isometry3d>& T_recorded_camera);
 
 /// Combines the prior with an alignment that started from it, each weighted by its uncertainty. An
-/// alignment's errors are correlated from frame to frame, so its standard deviation is at least 6 mm per
+/// alignment's errors are correlated from frame to frame, so its standard deviation is at least 4 mm per
 /// direction. Directions that the alignment does not constrain keep the prior. If the alignment
 /// contradicts() the prior, the prior's weight is that of its difference.
 /// Updates the estimates of the prior's noise and of its drift.
