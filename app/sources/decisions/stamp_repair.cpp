@@ -132,83 +132,106 @@ void find_unit(Stamps& stamps, bool received) {
 
 // ---- with times of reception ----
 
+/// The stamps that are stated, as stated, with their times of reception.
+struct ReceivedStamps {
+  std::vector<std::size_t> images{};  ///< indices in the list
+  std::vector<double> stamps_s{}, received_s{};
+
+  /// Returns the median of stamp - reception of the images k, k + 1, ...
+  [[nodiscard]] double level_from(std::size_t k) const {
+    constexpr std::size_t kWindow = 15;
+    std::vector<double> offsets;
+    for (std::size_t j = k; j < std::min(k + kWindow, images.size()); ++j)
+      offsets.push_back(stamps_s[j] - received_s[j]);
+    return median_of(std::move(offsets));
+  }
+
+  /// Returns whether stamp k neither follows the one before it nor is at the level. A recorder that stalls
+  /// receives late, but then the stamps go on as before.
+  [[nodiscard]] bool is_off(std::size_t k, double level_s, double period_s, double limit_s) const {
+    if (k == 0) return false;
+    const double step_s = stamps_s[k] - stamps_s[k - 1];
+    const double received_step_s = received_s[k] - received_s[k - 1];
+    const bool goes_back = step_s<-1.5 * period_s, jumps = step_s> received_step_s + 0.5 + 3.0 * period_s;
+    return (goes_back || jumps) && std::abs(stamps_s[k] - received_s[k] - level_s) > limit_s;
+  }
+};
+
+ReceivedStamps received_stamps_of(const Stamps& stamps) {
+  ReceivedStamps stated;
+  for (std::size_t i = 0; i < stamps.size(); ++i)
+    if (is_stated(stamps.s[i])) {
+      stated.images.push_back(i);
+      stated.stamps_s.push_back(stamps.s[i]);
+      stated.received_s.push_back(stamps.times[i].received_s);
+    }
+  return stated;
+}
+
+/// What became of the header's clock.
+struct ClockChanges {
+  double first_level_s = 0.0;   ///< stamp - reception by the clock at the beginning
+  double largest_step_s = 0.0;  ///< by which it was set
+  std::size_t moved = 0;        ///< number of stamps that were moved back to the first clock
+};
+
+/// Moves stamps after a change of the clock back to the first clock, and marks those far from the time of
+/// reception as not stated. One or more stamps are stated.
+ClockChanges follow_clock(Stamps& stamps, const ReceivedStamps& stated) {
+  ClockChanges changes;
+  const double period_s = period_of(stamps.s).value_or(1.0 / kNominalRate_hz);
+  const double limit_s = std::max(1.5 * period_s, 0.05);
+  double level_s = changes.first_level_s = stated.level_from(0);
+  double shift_s = 0.0;
+  for (std::size_t k = 0; k < stated.images.size(); ++k) {
+    const std::size_t i = stated.images[k];
+    const double stamp_s = stated.stamps_s[k];
+    if (stated.is_off(k, level_s, period_s, limit_s)) {
+      const double next_level_s = stated.level_from(k);
+      if (std::abs(next_level_s - level_s) > limit_s) {
+        if (std::abs(next_level_s - level_s) > std::abs(changes.largest_step_s))
+          changes.largest_step_s = next_level_s - level_s;
+        level_s = next_level_s;
+        shift_s = changes.first_level_s - level_s;
+        stamps.result.stretches.push_back({i, shift_s});
+      }
+    }
+    if (std::abs(stamp_s - stated.received_s[k] - level_s) > std::max(2.0, 30.0 * period_s)) {
+      stamps.s[i] = kNoStamp;
+    } else if (shift_s != 0.0) {
+      stamps.s[i] = stamp_s + shift_s;
+      ++changes.moved;
+    }
+  }
+  return changes;
+}
+
 /// Finds places where the header's clock was set, by comparison with the time of reception. Moves later
 /// stamps back to the first clock. Replaces stamps that are not stated, or far from the time of reception for
 /// a moment.
 void repair_by_reception(Stamps& stamps) {
-  constexpr std::size_t kWindow = 15;
-  std::vector<std::size_t> stated;
-  for (std::size_t i = 0; i < stamps.size(); ++i)
-    if (is_stated(stamps.s[i])) stated.push_back(i);
-  const auto received_s = [&](std::size_t i) { return stamps.times[i].received_s; };
-  const auto offset_s = [&](std::size_t k) { return stamps.s[stated[k]] - received_s(stated[k]); };
-  const auto level_from = [&](std::size_t k) {  // of the images k, k + 1, ...
-    std::vector<double> offsets;
-    for (std::size_t j = k; j < std::min(k + kWindow, stated.size()); ++j) offsets.push_back(offset_s(j));
-    return median_of(std::move(offsets));
-  };
-  double first_level_s = stamps.rules.like ? stamps.rules.like->header_offset_s : 0.0;
-  std::size_t moved = 0, replaced = 0;
-  double largest_step_s = 0.0;
-  if (!stated.empty()) {
-    const double period_s = period_of(stamps.s).value_or(1.0 / kNominalRate_hz);
-    double level_s = first_level_s = level_from(0);
-    double shift_s = 0.0;
-    std::vector<double> last_stamp_s;  // as stated, of the stated images
-    for (std::size_t k = 0; k < stated.size(); ++k) last_stamp_s.push_back(stamps.s[stated[k]]);
-    for (std::size_t k = 0; k < stated.size(); ++k) {
-      const std::size_t i = stated[k];
-      const double stamp_s = last_stamp_s[k];
-      const double away_s = stamp_s - received_s(i) - level_s;
-      const double step_s = k > 0 ? stamp_s - last_stamp_s[k - 1] : 0.0;
-      const double received_step_s = k > 0 ? received_s(i) - received_s(stated[k - 1]) : 0.0;
-      // A recorder that stalls receives late, but then the stamps go on as before.
-      const bool goes_back = step_s<-1.5 * period_s, jumps = step_s> received_step_s + 0.5 + 3.0 * period_s;
-      const double limit_s = std::max(1.5 * period_s, 0.05);
-      if (k > 0 && (goes_back || jumps) && std::abs(away_s) > limit_s) {
-        const double next_level_s = [&] {
-          std::vector<double> offsets;
-          for (std::size_t j = k; j < std::min(k + kWindow, stated.size()); ++j)
-            offsets.push_back(last_stamp_s[j] - received_s(stated[j]));
-          return median_of(std::move(offsets));
-        }();
-        if (std::abs(next_level_s - level_s) > limit_s) {
-          largest_step_s = std::abs(next_level_s - level_s) > std::abs(largest_step_s)
-                               ? next_level_s - level_s
-                               : largest_step_s;
-          level_s = next_level_s;
-          shift_s = first_level_s - level_s;
-          stamps.result.stretches.push_back({i, shift_s});
-        }
-      }
-      if (std::abs(stamp_s - received_s(i) - level_s) > std::max(2.0, 30.0 * period_s)) {
-        stamps.s[i] = kNoStamp;
-        continue;
-      }
-      if (shift_s != 0.0) {
-        stamps.s[i] = stamp_s + shift_s;
-        ++moved;
-      }
-    }
-  }
+  const ReceivedStamps stated = received_stamps_of(stamps);
+  ClockChanges changes{.first_level_s = stamps.rules.like ? stamps.rules.like->header_offset_s : 0.0};
+  if (!stated.images.empty()) changes = follow_clock(stamps, stated);
+  std::size_t replaced = 0;
   for (std::size_t i = 0; i < stamps.size(); ++i) {
     if (is_stated(stamps.s[i])) continue;
-    stamps.s[i] = received_s(i) + first_level_s;
+    stamps.s[i] = stamps.times[i].received_s + changes.first_level_s;
     ++replaced;
   }
-  stamps.result.header_offset_s = first_level_s;
+  stamps.result.header_offset_s = changes.first_level_s;
   if (replaced == stamps.size())
     stamps.say(replaced,
                "the " + stamps.rules.what + " have no time stamps; their times of reception are used");
   else if (replaced > 0)
     stamps.say(replaced, images_have(replaced, stamps.rules.what) +
                              " no usable time stamp; their times of reception are used");
-  if (moved > 0)
-    stamps.say(moved, "the clock of the " + stamps.rules.what + " was set " +
-                          (largest_step_s < 0 ? "back" : "forward") + " by " +
-                          format_readable(std::abs(largest_step_s), 3) + " s at image " +
-                          std::to_string(stamps.result.stretches.front().first) +
-                          "; later stamps follow the time of reception");
+  if (changes.moved > 0)
+    stamps.say(changes.moved, "the clock of the " + stamps.rules.what + " was set " +
+                                  (changes.largest_step_s < 0 ? "back" : "forward") + " by " +
+                                  format_readable(std::abs(changes.largest_step_s), 3) + " s at image " +
+                                  std::to_string(stamps.result.stretches.front().first) +
+                                  "; later stamps follow the time of reception");
 }
 
 // ---- without times of reception ----
@@ -283,84 +306,108 @@ void join_two_clocks(Stamps& stamps, double period_s) {
              true);
 }
 
-/// Splits the list where its stamps decrease. Moves later parts if the clock was set back there, which is
-/// assumed if the list has few such places and the stamps do not simply belong into another order.
-void undo_clock_changes(Stamps& stamps) {
-  std::vector<std::size_t> stated;
+/// Runs of increasing stamps, in the order of the list.
+struct Runs {
+  std::vector<std::size_t> stated{};      ///< indices of the stamps that are stated
+  std::vector<std::size_t> begins = {0};  ///< of runs, in `stated`
+  std::size_t swapped = 0;                ///< stamps before an earlier one within a run
+
+  /// The first and the last image of a run, and the end in `stated`.
+  [[nodiscard]] std::size_t first(std::size_t run) const { return stated[begins[run]]; }
+  [[nodiscard]] std::size_t last(std::size_t run) const { return stated[end(run) - 1]; }
+  [[nodiscard]] std::size_t end(std::size_t run) const {
+    return run + 1 < begins.size() ? begins[run + 1] : stated.size();
+  }
+};
+
+/// Splits the list where its stamps decrease. Two or three images that were listed in the wrong order are not
+/// a change of the clock.
+Runs runs_of(const Stamps& stamps, double period_s) {
+  Runs runs;
+  std::vector<std::size_t>& stated = runs.stated;
   for (std::size_t i = 0; i < stamps.size(); ++i)
     if (is_stated(stamps.s[i])) stated.push_back(i);
-  if (stated.size() < 2) return;
-  const double period_s = period_of(stamps.s).value_or(1.0 / kNominalRate_hz);
-  std::vector<std::size_t> begins = {0};  // of runs of increasing stamps, in `stated`
-  std::size_t swapped = 0;
+  if (stated.empty()) return runs;
   double largest_s = stamps.s[stated[0]];
   for (std::size_t k = 1; k < stated.size(); ++k) {
     const double stamp_s = stamps.s[stated[k]];
     if (stamp_s < stamps.s[stated[k - 1]]) {
-      // Two or three images that were listed in the wrong order are not a change of the clock.
       std::size_t behind = 0;
       for (std::size_t j = k; j < std::min(k + 4, stated.size()); ++j)
         behind += stamps.s[stated[j]] < largest_s ? 1U : 0U;
       const bool is_swap = behind <= 2 && largest_s - stamp_s < 4.0 * period_s;
       if (is_swap)
-        ++swapped;
+        ++runs.swapped;
       else {
-        begins.push_back(k);
+        runs.begins.push_back(k);
         largest_s = stamp_s;
       }
     }
     largest_s = std::max(largest_s, stamp_s);
   }
-  if (begins.size() == 1) {
-    if (swapped > 0)
-      stamps.say(swapped,
-                 images_have(swapped, stamps.rules.what) + " been listed before an earlier one; sorted");
-    return;
-  }
-  const bool is_shuffled = begins.size() > 3 && stated.size() < 8 * begins.size();
-  const auto end_of = [&](std::size_t run) {
-    return run + 1 < begins.size() ? begins[run + 1] : stated.size();
-  };
-  // Sorted, do the runs follow one another without a gap?
-  std::vector<std::size_t> by_time(begins.size());
+  return runs;
+}
+
+/// Returns whether the runs, sorted by time, follow one another without a gap.
+bool are_in_line(const Runs& runs, const Stamps& stamps, double period_s) {
+  std::vector<std::size_t> by_time(runs.begins.size());
   std::iota(by_time.begin(), by_time.end(), 0U);
-  std::sort(by_time.begin(), by_time.end(), [&](std::size_t a, std::size_t b) {
-    return stamps.s[stated[begins[a]]] < stamps.s[stated[begins[b]]];
-  });
-  bool are_in_line = true;
+  std::sort(by_time.begin(), by_time.end(),
+            [&](std::size_t a, std::size_t b) { return stamps.s[runs.first(a)] < stamps.s[runs.first(b)]; });
+  bool are = true;
   for (std::size_t i = 1; i < by_time.size(); ++i) {
-    const double last_s = stamps.s[stated[end_of(by_time[i - 1]) - 1]];
-    const double first_s = stamps.s[stated[begins[by_time[i]]]];
-    are_in_line &= first_s >= last_s && first_s - last_s <= std::max(10.0 * period_s, 2.0);
+    const double last_s = stamps.s[runs.last(by_time[i - 1])], first_s = stamps.s[runs.first(by_time[i])];
+    are &= first_s >= last_s && first_s - last_s <= std::max(10.0 * period_s, 2.0);
   }
-  const bool is_contiguous = longest_gap_s(stamps.s) <= std::max(100.0 * period_s, 10.0);
-  if (is_shuffled && !is_contiguous) return join_two_clocks(stamps, period_s);
-  if (is_shuffled || are_in_line) {
-    stamps.say(stamps.size(),
-               "the " + stamps.rules.what + " are not listed in the order of their stamps; sorted");
-    return;
-  }
+  return are;
+}
+
+/// Moves each run but the first one, so that it continues after the one before it.
+void continue_runs(const Runs& runs, Stamps& stamps, double period_s) {
   double shift_s = 0.0, largest_step_s = 0.0;
   const RepairedStamps* like = stamps.rules.like;
-  const bool has_same_changes = like && like->stretches.size() == begins.size() - 1;
+  const bool has_same_changes = like && like->stretches.size() == runs.begins.size() - 1;
   std::size_t moved = 0;
-  for (std::size_t run = 1; run < begins.size(); ++run) {
-    const double last_s = stamps.s[stated[begins[run] - 1]];  // already moved
-    const double first_s = stamps.s[stated[begins[run]]];
+  for (std::size_t run = 1; run < runs.begins.size(); ++run) {
+    const double last_s = stamps.s[runs.last(run - 1)];  // already moved
+    const double first_s = stamps.s[runs.first(run)];
     shift_s = last_s + period_s - first_s;
     // Images of one recording are moved together, so that pairs stay pairs.
     if (has_same_changes &&
         std::abs(like->stretches[run - 1].shift_s - shift_s) < std::max(1.0, 10.0 * period_s))
       shift_s = like->stretches[run - 1].shift_s;
     largest_step_s = std::max(largest_step_s, shift_s);
-    stamps.result.stretches.push_back({stated[begins[run]], shift_s});
-    for (std::size_t k = begins[run]; k < end_of(run); ++k, ++moved) stamps.s[stated[k]] += shift_s;
+    stamps.result.stretches.push_back({runs.first(run), shift_s});
+    for (std::size_t k = runs.begins[run]; k < runs.end(run); ++k, ++moved)
+      stamps.s[runs.stated[k]] += shift_s;
   }
   stamps.say(moved,
              "the clock was set back by " + format_readable(largest_step_s, 3) + " s at image " +
                  std::to_string(stamps.result.stretches.front().first) + " of the " + stamps.rules.what +
                  "; later stamps continue after the ones before",
              true);
+}
+
+/// Splits the list where its stamps decrease. Moves later parts if the clock was set back there, which is
+/// assumed if the list has few such places and the stamps do not simply belong into another order.
+void undo_clock_changes(Stamps& stamps) {
+  const double period_s = period_of(stamps.s).value_or(1.0 / kNominalRate_hz);
+  const Runs runs = runs_of(stamps, period_s);
+  if (runs.stated.size() < 2) return;
+  if (runs.begins.size() == 1) {
+    if (runs.swapped > 0)
+      stamps.say(runs.swapped,
+                 images_have(runs.swapped, stamps.rules.what) + " been listed before an earlier one; sorted");
+    return;
+  }
+  const bool is_shuffled = runs.begins.size() > 3 && runs.stated.size() < 8 * runs.begins.size();
+  const bool is_contiguous = longest_gap_s(stamps.s) <= std::max(100.0 * period_s, 10.0);
+  if (is_shuffled && !is_contiguous) return join_two_clocks(stamps, period_s);
+  if (is_shuffled || are_in_line(runs, stamps, period_s))
+    stamps.say(stamps.size(),
+               "the " + stamps.rules.what + " are not listed in the order of their stamps; sorted");
+  else
+    continue_runs(runs, stamps, period_s);
 }
 
 /// Interpolates stamps that are not stated between their neighbours in the list, where these are near.
