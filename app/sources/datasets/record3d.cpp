@@ -96,6 +96,65 @@ Intrinsics colour_camera_of(const Json& metadata, const std::string& where) {
   return camera;
 }
 
+/// Sets cameras, unit and axes.
+/// @param colour  see colour_camera_of()
+/// @throws Error if the size of the depth images is not known, or not of the shape of the colour images
+void set_rig(const Json& metadata, const fs::path& metadata_path, const Intrinsics& colour,
+             const std::map<std::int64_t, fs::path>& depth_images, RecordingFacts& facts) {
+  const std::string where = metadata_path.string();
+  facts.rig.colour_camera = colour;
+  facts.rig.depth_noise = kPhoneLidarNoise;
+  facts.rig.depth_camera = scaled_to_depth(colour, depth_size_of(metadata, depth_images, where), where);
+  facts.camera_source = "K in " + metadata_path.filename().string();
+  if (!metadata.contains("K")) {
+    facts.camera_origin = Origin::kAssumed;
+    facts.camera_source = "an iPhone";
+  }
+  facts.is_depth_registered = true;
+  const bool are_metres = depth_images.empty() || depth_images.begin()->second.extension() != ".png";
+  facts.depth_unit_m = are_metres ? 1.0 : 0.001;
+  facts.unit_source =
+      are_metres ? "metres, by Record3D's format" : "assumed: millimetres, as in most .png files";
+  if (!are_metres) facts.unit_origin = Origin::kAssumed;
+  facts.has_quaternions = true;
+  set_arkit_axes(facts, /*camera_is_opengl=*/true);
+}
+
+/// Times and poses of the metadata, by image number.
+struct Tracks {
+  Json poses, stamps;
+  double fps = 30.0;
+};
+
+Tracks tracks_of(const Json& metadata, const std::string& where) {
+  const Tracks tracks{metadata.value("poses", Json()), metadata.value("frameTimestamps", Json()),
+                      metadata.contains("fps") ? json_number(metadata, "fps", where) : 30.0};
+  if (!(tracks.poses.is_array() || tracks.poses.is_null()) ||
+      !(tracks.stamps.is_array() || tracks.stamps.is_null()))
+    throw Error(where + ": poses and frameTimestamps must be lists");
+  if (!(tracks.fps > 0.0)) throw Error(where + ": fps must be > 0");
+  return tracks;
+}
+
+/// Returns the frame of an image number, without colour.
+StatedFrame frame_of(std::int64_t number, const Tracks& tracks) {
+  const auto at = static_cast<std::size_t>(number);
+  const Json &poses = tracks.poses, &stamps = tracks.stamps;
+  StatedFrame frame{.time = {.stamp_s = static_cast<double>(number) / tracks.fps}};
+  if (!stamps.empty())
+    frame.time.stamp_s = at < stamps.size() && stamps[at].is_number() ? stamps[at].get<double>() : kNoStamp;
+  if (!poses.empty()) {
+    const auto p = at < poses.size() ? listed_numbers(poses[at], 7) : std::nullopt;
+    if (p)
+      frame.T_world_camera = rigid_pose({(*p)[4], (*p)[5], (*p)[6]}, {(*p)[0], (*p)[1], (*p)[2], (*p)[3]});
+    if (!frame.T_world_camera)
+      frame.pose_fault = at >= poses.size() ? "is missing in metadata"
+                         : p                ? "is no rigid transform"
+                                            : "is not a list of 7 numbers";
+  }
+  return frame;
+}
+
 /// Returns the file metadata, or metadata.json as other versions name it; empty if there is neither.
 fs::path metadata_file(const fs::path& folder) {
   std::error_code ignored;
@@ -138,49 +197,16 @@ RecordingFacts index_record3d(const fs::path& folder) {
 
   RecordingFacts facts{.name = fs::canonical(folder).string()};
   const Intrinsics colour = colour_camera_of(metadata, where);
-  facts.rig.colour_camera = colour;
   const auto depth_images = depth_images_of(folder);
-  facts.rig.depth_noise = kPhoneLidarNoise;
-  facts.rig.depth_camera = scaled_to_depth(colour, depth_size_of(metadata, depth_images, where), where);
-  facts.camera_source = "K in " + metadata_path.filename().string();
-  if (!metadata.contains("K")) {
-    facts.camera_origin = Origin::kAssumed;
-    facts.camera_source = "an iPhone";
-  }
-  facts.is_depth_registered = true;
-  const bool are_metres = depth_images.empty() || depth_images.begin()->second.extension() != ".png";
-  facts.depth_unit_m = are_metres ? 1.0 : 0.001;
-  facts.unit_source =
-      are_metres ? "metres, by Record3D's format" : "assumed: millimetres, as in most .png files";
-  if (!are_metres) facts.unit_origin = Origin::kAssumed;
-  facts.has_quaternions = true;
-  set_arkit_axes(facts, /*camera_is_opengl=*/true);
-
-  const Json poses = metadata.value("poses", Json());
-  const Json stamps = metadata.value("frameTimestamps", Json());
-  const double fps = metadata.contains("fps") ? json_number(metadata, "fps", where) : 30.0;
-  if (!(poses.is_array() || poses.is_null()) || !(stamps.is_array() || stamps.is_null()))
-    throw Error(where + ": poses and frameTimestamps must be lists");
-  if (!(fps > 0.0)) throw Error(where + ": fps must be > 0");
-  facts.has_no_clock = stamps.empty() && !metadata.contains("fps");
+  set_rig(metadata, metadata_path, colour, depth_images, facts);
+  const Tracks tracks = tracks_of(metadata, where);
+  facts.has_no_clock = tracks.stamps.empty() && !metadata.contains("fps");
 
   const auto images = numbered_files(folder / "rgb", {".jpg", ".jpeg", ".png"});
   std::vector<fs::path> depth_paths, colour_paths;
   std::ptrdiff_t with_colour = 0;
   for (const auto& [number, file] : depth_images) {
-    const auto at = static_cast<std::size_t>(number);
-    StatedFrame frame{.time = {.stamp_s = static_cast<double>(number) / fps}};
-    if (!stamps.empty())
-      frame.time.stamp_s = at < stamps.size() && stamps[at].is_number() ? stamps[at].get<double>() : kNoStamp;
-    if (!poses.empty()) {
-      const auto p = at < poses.size() ? listed_numbers(poses[at], 7) : std::nullopt;
-      if (p)
-        frame.T_world_camera = rigid_pose({(*p)[4], (*p)[5], (*p)[6]}, {(*p)[0], (*p)[1], (*p)[2], (*p)[3]});
-      if (!frame.T_world_camera)
-        frame.pose_fault = at >= poses.size() ? "is missing in metadata"
-                           : p                ? "is no rigid transform"
-                                              : "is not a list of 7 numbers";
-    }
+    StatedFrame frame = frame_of(number, tracks);
     const auto image = images.find(number);
     if (image != images.end()) frame.colour = colour_paths.size();
     depth_paths.push_back(file);

@@ -105,6 +105,79 @@ std::map<std::int64_t, Odometry> read_odometry(const fs::path& folder, Recording
   return odometry;
 }
 
+/// Returns the video of colour images; null, with a note, if it is missing or cannot be read.
+std::shared_ptr<VideoFile> open_video(const fs::path& folder, RecordingFacts& facts) {
+  try {
+    return std::make_shared<VideoFile>(folder / "rgb.mp4");
+  } catch (const Error& fault) {
+    const bool is_missing = !fs::exists(folder / "rgb.mp4");
+    facts.notes.push_back(
+        {"images",
+         is_missing ? "rgb.mp4 is missing; depth is used without colour"
+                    : "rgb.mp4 cannot be read, depth is used without colour: " + std::string(fault.what()),
+         0, "", !is_missing});
+    return nullptr;
+  }
+}
+
+/// Files of the frames, in the order of RecordingFacts::frames.
+struct StrayFrames {
+  std::vector<fs::path> depth{};
+  std::vector<std::size_t> numbers{};  ///< images of the video
+};
+
+/// Adds a frame per depth image, with its line of odometry.csv, and notes where one of these is missing.
+StrayFrames add_frames(const fs::path& folder, bool has_video, RecordingFacts& facts) {
+  const std::map<std::int64_t, Odometry> odometry = read_odometry(folder, facts);
+  StrayFrames files;
+  std::size_t without_row = 0;
+  for (const auto& [number, path] : numbered_files(folder / "depth", {".png"})) {
+    StatedFrame frame;
+    if (has_video) frame.colour = files.numbers.size();
+    if (const auto row = odometry.find(number); row != odometry.end()) {
+      frame.time.stamp_s = row->second.stamp_s;
+      frame.T_world_camera = row->second.T_world_camera;
+      if (!frame.T_world_camera) frame.pose_fault = "is no rigid transform";
+    } else {
+      ++without_row;
+    }
+    facts.frames.push_back(std::move(frame));
+    files.depth.push_back(path);
+    files.numbers.push_back(static_cast<std::size_t>(number));
+  }
+  if (without_row > 0 && !odometry.empty())
+    facts.notes.push_back({"poses",
+                           std::to_string(without_row) +
+                               " depth images have no line in odometry.csv; they are used "
+                               "without a pose",
+                           static_cast<std::int64_t>(without_row)});
+  if (const std::size_t with_row = files.depth.size() - without_row; with_row < odometry.size())
+    facts.notes.push_back({"images",
+                           std::to_string(odometry.size() - with_row) + " of " +
+                               std::to_string(odometry.size()) +
+                               " frames of odometry.csv have no depth image; they are left out",
+                           static_cast<std::int64_t>(odometry.size() - with_row)});
+  return files;
+}
+
+/// Sets the cameras: as camera_matrix.csv states, else an iPhone's.
+void set_cameras(const fs::path& folder, const VideoFile* video, ImageSize depth_size,
+                 RecordingFacts& facts) {
+  std::optional<ImageSize> video_size;
+  if (video) video_size = ImageSize{video->width_px(), video->height_px()};
+  const fs::path matrix = folder / "camera_matrix.csv";
+  const bool is_camera_stated = fs::exists(matrix);
+  const Intrinsics colour = is_camera_stated ? camera_matrix_of(matrix, video_size, depth_size)
+                                             : phone_camera(video_size.value_or(depth_size));
+  facts.camera_source = "camera_matrix.csv";
+  if (!is_camera_stated) {
+    facts.camera_origin = Origin::kAssumed;
+    facts.camera_source = "an iPhone";
+  }
+  if (video) facts.rig.colour_camera = colour;
+  facts.rig.depth_camera = scaled_to_depth(colour, depth_size, folder.string());
+}
+
 /// Sets pixels of confidence 0 to 0.
 void remove_unsure(const Image<std::uint8_t>& confidence, const std::string& where, DepthImage& depth_m) {
   if (confidence.width != depth_m.width || confidence.height != depth_m.height)
@@ -125,72 +198,20 @@ bool is_stray_scanner(const fs::path& folder) {
 
 RecordingFacts index_stray_scanner(const fs::path& folder) {
   RecordingFacts facts{.name = fs::canonical(folder).string()};
-  std::shared_ptr<VideoFile> video;
-  try {
-    video = std::make_shared<VideoFile>(folder / "rgb.mp4");
-  } catch (const Error& fault) {
-    const bool is_missing = !fs::exists(folder / "rgb.mp4");
-    facts.notes.push_back(
-        {"images",
-         is_missing ? "rgb.mp4 is missing; depth is used without colour"
-                    : "rgb.mp4 cannot be read, depth is used without colour: " + std::string(fault.what()),
-         0, "", !is_missing});
-  }
+  const std::shared_ptr<VideoFile> video = open_video(folder, facts);
   facts.rig.depth_noise = kPhoneLidarNoise;
-  facts.camera_source = "camera_matrix.csv";
   facts.is_depth_registered = true;
   facts.unit_source = "millimetres, by Stray Scanner's format";
   facts.stamps_have_no_unit = true;
   facts.has_quaternions = true;
   set_arkit_axes(facts, /*camera_is_opengl=*/false);
 
-  const std::map<std::int64_t, Odometry> odometry = read_odometry(folder, facts);
-  std::vector<fs::path> paths;
-  std::vector<std::size_t> numbers;
-  std::size_t without_row = 0;
-  for (const auto& [number, path] : numbered_files(folder / "depth", {".png"})) {
-    StatedFrame frame;
-    if (video) frame.colour = numbers.size();
-    if (const auto row = odometry.find(number); row != odometry.end()) {
-      frame.time.stamp_s = row->second.stamp_s;
-      frame.T_world_camera = row->second.T_world_camera;
-      if (!frame.T_world_camera) frame.pose_fault = "is no rigid transform";
-    } else {
-      ++without_row;
-    }
-    facts.frames.push_back(std::move(frame));
-    paths.push_back(path);
-    numbers.push_back(static_cast<std::size_t>(number));
-  }
-  if (without_row > 0 && !odometry.empty())
-    facts.notes.push_back({"poses",
-                           std::to_string(without_row) +
-                               " depth images have no line in odometry.csv; they are used "
-                               "without a pose",
-                           static_cast<std::int64_t>(without_row)});
-  if (const std::size_t with_row = paths.size() - without_row; with_row < odometry.size())
-    facts.notes.push_back({"images",
-                           std::to_string(odometry.size() - with_row) + " of " +
-                               std::to_string(odometry.size()) +
-                               " frames of odometry.csv have no depth image; they are left out",
-                           static_cast<std::int64_t>(odometry.size() - with_row)});
-  const ImageSize depth_size = size_of_images(paths, folder);
-  std::optional<ImageSize> video_size;
-  if (video) video_size = ImageSize{video->width_px(), video->height_px()};
-  const fs::path matrix = folder / "camera_matrix.csv";
-  const bool is_camera_stated = fs::exists(matrix);
-  const Intrinsics colour = is_camera_stated ? camera_matrix_of(matrix, video_size, depth_size)
-                                             : phone_camera(video_size.value_or(depth_size));
-  if (!is_camera_stated) {
-    facts.camera_origin = Origin::kAssumed;
-    facts.camera_source = "an iPhone";
-  }
-  if (video) facts.rig.colour_camera = colour;
-  facts.rig.depth_camera = scaled_to_depth(colour, depth_size, folder.string());
-  facts.read_depth = [paths](std::size_t frame, double unit_m, DepthImage& depth_m) {
+  const auto [paths, numbers] = add_frames(folder, video != nullptr, facts);
+  set_cameras(folder, video.get(), size_of_images(paths, folder), facts);
+  facts.read_depth = [paths = paths](std::size_t frame, double unit_m, DepthImage& depth_m) {
     read_depth_file(paths[frame], DepthEncoding::kMillimetres, unit_m, depth_m);
   };
-  facts.remove_unsure = [paths, folder](std::size_t frame, DepthImage& depth_m) {
+  facts.remove_unsure = [paths = paths, folder](std::size_t frame, DepthImage& depth_m) {
     const fs::path confidence_path = folder / "confidence" / paths[frame].filename();
     if (!fs::exists(confidence_path)) return;
     Image<std::uint8_t> confidence;
@@ -198,7 +219,7 @@ RecordingFacts index_stray_scanner(const fs::path& folder) {
     decode_grey_png(read_bytes(confidence_path, "an image"), name, confidence);
     remove_unsure(confidence, name, depth_m);
   };
-  facts.read_colour = [video, numbers](std::size_t frame, ColourImage& image) {
+  facts.read_colour = [video, numbers = numbers](std::size_t frame, ColourImage& image) {
     video->read(numbers[frame], image);
   };
   return facts;
