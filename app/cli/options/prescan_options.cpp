@@ -27,15 +27,8 @@ GivenUp parse_up(const std::string& text) {
   return {direction.normalized()};
 }
 
-}  // namespace
-
-// Not split: one call per option, in the order of the help.
-void add_options(CLI::App& command, PrescanOptions& options) {
-  add_source_argument(command, options.source);
-  command
-      .add_option("--map", options.map, "folder for the map; an existing map there is replaced (required)")
-      ->required()
-      ->type_name("DIR");
+/// The window, and what it does when the camera is lost.
+void add_window_options(CLI::App& command, PrescanOptions& options) {
   command.add_flag("--window", options.window,
                    "open a window: watch the model grow, see what is known and what is wrong; pause, finish\n"
                    "(default: off)");
@@ -44,13 +37,10 @@ void add_options(CLI::App& command, PrescanOptions& options) {
       {{"none", {false, false}}, {"flash", {true, false}}, {"bell", {false, true}}, {"both", {true, true}}},
       "what the window does when the camera is lost: the picture's frame flashes, the terminal's\n"
       "bell rings, or both");
-  add_poses_option(
-      command, options.poses,
-      "estimate the camera poses, with those of the recording, if any, as a prior on the motion that\n"
-      "depth verifies (auto) or without them (tracked), or use those of the recording (recorded)");
-  add_frames_option(command, options.frames);
-  add_calibration_option(command, options.calibration);
-  add_input_options(command, options.input);
+}
+
+/// What becomes part of the map.
+void add_map_options(CLI::App& command, PrescanOptions& options) {
   command
       .add_option_function<std::string>(
           "--up", [&options](const std::string& text) { options.up = parse_up(text); },
@@ -77,6 +67,10 @@ void add_options(CLI::App& command, PrescanOptions& options) {
       command, "--texture", options.texture, {{"on", true}, {"off", false}},
       "bake a texture of the room's surface from the best frames; takes some seconds and 0.2 GB, and\n"
       "is left out where --max-memory has no room for it");
+}
+
+/// How a scan ends early and is continued.
+void add_interruption_options(CLI::App& command, PrescanOptions& options) {
   command.add_flag(
       "--resume", options.resume,
       "continue the interrupted scan of this map (DIR.unfinished); if there is none, extend the\n"
@@ -98,6 +92,27 @@ void add_options(CLI::App& command, PrescanOptions& options) {
           "(default: no limit)")
       ->check(within(1.0, 1e7, "megabytes"))
       ->type_name("MB");
+}
+
+}  // namespace
+
+// The order of the calls is that of the help.
+void add_options(CLI::App& command, PrescanOptions& options) {
+  add_source_argument(command, options.source);
+  command
+      .add_option("--map", options.map, "folder for the map; an existing map there is replaced (required)")
+      ->required()
+      ->type_name("DIR");
+  add_window_options(command, options);
+  add_poses_option(
+      command, options.poses,
+      "estimate the camera poses, with those of the recording, if any, as a prior on the motion that\n"
+      "depth verifies (auto) or without them (tracked), or use those of the recording (recorded)");
+  add_frames_option(command, options.frames);
+  add_calibration_option(command, options.calibration);
+  add_input_options(command, options.input);
+  add_map_options(command, options);
+  add_interruption_options(command, options);
   add_ui_scale_option(command, options.ui_scale);
   add_preset_options(command, options.preset, options.presets);
   add_scan_quality_options(command, options.fixed);
