@@ -1,5 +1,5 @@
-// scenario_jobs.hpp: splits the scenarios of a run into jobs of `roomradar farm`, and merges the jobs'
-// results.
+// scenario_jobs.hpp: splits the scenarios of a run into jobs of `roomradar farm`, stores their results in
+// files, and merges these.
 #pragma once
 #include <filesystem>
 #include <map>
@@ -10,6 +10,13 @@
 #include "app/evaluation/fallthrough/totals.hpp"
 
 namespace roomradar {
+
+/// Writes rows as JSON. read_rows() reads exactly the same numbers. Throws Error if the file cannot be
+/// written.
+void write_rows(const std::vector<ScenarioRow>& rows, const std::filesystem::path& path);
+
+/// Reads what write_rows() wrote. Throws Error if the file cannot be read or its contents are not such rows.
+std::vector<ScenarioRow> read_rows(const std::filesystem::path& path);
 
 /// Returns the manifest: a job that scans the rooms, and one job per options.job_size scenarios. More
 /// scenarios add jobs and leave all full jobs unchanged.

@@ -1,9 +1,11 @@
-// trial_pictures.hpp: pictures of a trial, with the camera's view and a section along the object's path.
+// trial_pictures.hpp: pictures and a video of a trial, with the camera's view and a section along the
+// object's path.
 #pragma once
 #include <memory>
 #include <span>
 
 #include "app/evaluation/fallthrough/trial.hpp"
+#include "app/media/video_writer.hpp"
 #include "mapping/types/image.hpp"
 
 namespace roomradar {
@@ -44,5 +46,11 @@ void add_outline(const Scenario& scenario, double travelled_m, Rgb colour, doubl
 /// Returns camera view and section side by side, with the object at its start (blue), at the true contact
 /// (green) and at its end (red).
 ColourImage picture_of_trial(PreparedScenario& prepared, MappedRoom& room, std::size_t policy, Radar& radar);
+
+/// Writes a slow-motion video and closes it. The video shows the camera's view and, per policy, a section
+/// with the surfaces and the object's path. Throws Error as VideoWriter does.
+/// @param video  must contain no pictures yet and have the rate kReplayPicturesPerS
+void write_replay(PreparedScenario& prepared, MappedRoom& room, Radar& radar, VideoWriter& video);
+inline constexpr double kReplayPicturesPerS = 30.0;
 
 }  // namespace roomradar

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/evaluation/pareto/measured_setting.hpp"
+#include "app/evaluation/pareto/measured_work.hpp"
 
 namespace roomradar {
 

@@ -3,7 +3,7 @@
 #include <functional>
 #include <string>
 
-#include "app/evaluation/pareto/measured_setting.hpp"
+#include "app/evaluation/pareto/measured_work.hpp"
 
 namespace roomradar {
 

@@ -8,7 +8,6 @@
 #include "app/cli/apply_scan_quality.hpp"
 #include "app/cli/report.hpp"
 #include "app/evaluation/held_out.hpp"
-#include "app/evaluation/trade/kept_frames.hpp"
 #include "app/evaluation/trade/measured_sandboxed.hpp"
 #include "app/evaluation/trade/trade_frames.hpp"
 #include "app/sim/scenarios/surface_score.hpp"

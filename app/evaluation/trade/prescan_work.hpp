@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "app/evaluation/pareto/measured_setting.hpp"
-#include "app/evaluation/trade/trade_scale.hpp"
+#include "app/evaluation/pareto/measured_work.hpp"
+#include "app/evaluation/trade/trade_frames.hpp"
 #include "app/quality/quality.hpp"
 
 namespace roomradar {

@@ -8,7 +8,6 @@
 
 #include "app/cli/report.hpp"
 #include "app/evaluation/fallthrough/totals.hpp"
-#include "app/evaluation/trade/kept_frames.hpp"
 #include "app/evaluation/trade/measured_sandboxed.hpp"
 #include "app/evaluation/trade/trade_frames.hpp"
 #include "app/session/apply_quality.hpp"

@@ -10,7 +10,7 @@
 
 #include "app/evaluation/fallthrough/trial.hpp"
 #include "app/evaluation/trade/picture_judge.hpp"
-#include "app/evaluation/trade/trade_scale.hpp"
+#include "app/evaluation/trade/trade_frames.hpp"
 #include "app/quality/quality.hpp"
 #include "app/session/frame_scene.hpp"
 #include "mapping/map/map_folder.hpp"

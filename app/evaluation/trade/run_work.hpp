@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "app/evaluation/pareto/measured_setting.hpp"
+#include "app/evaluation/pareto/measured_work.hpp"
 #include "app/evaluation/trade/run_facts.hpp"
-#include "app/evaluation/trade/trade_scale.hpp"
+#include "app/evaluation/trade/trade_frames.hpp"
 
 namespace roomradar {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "app/evaluation/trade/trade_scale.hpp"
+#include "app/evaluation/trade/trade_frames.hpp"
 
 namespace roomradar {
 

@@ -1,4 +1,4 @@
-// trade_frames.cpp: reads and checks the frames, so a sweep does not fail midway.
+// trade_frames.cpp: reads the frames of a recording.
 #include "app/evaluation/trade/trade_frames.hpp"
 
 #include <algorithm>

@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "app/evaluation/fallthrough/mapped_room.hpp"
-#include "app/evaluation/fallthrough/scenario_rows.hpp"
 #include "app/farm/farm.hpp"
 #include "app/farm/manifest.hpp"
 #include "mapping/types/system/file_io.hpp"

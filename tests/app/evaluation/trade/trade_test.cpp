@@ -12,9 +12,8 @@
 #include <sstream>
 
 #include "app/evaluation/pareto/choose_presets.hpp"
-#include "app/evaluation/pareto/greedy_search.hpp"
 #include "app/evaluation/pareto/pareto_front.hpp"
-#include "app/evaluation/pareto/sample_settings.hpp"
+#include "app/evaluation/pareto/setting_choice.hpp"
 #include "app/evaluation/pareto/sweep.hpp"
 #include "app/evaluation/pareto/sweep_jobs.hpp"
 #include "app/evaluation/trade/picture_judge.hpp"

@@ -1,5 +1,5 @@
-// parameter.cpp: default settings, and settings as text.
-#include "app/evaluation/pareto/parameter.hpp"
+// measured_work.cpp: settings as words, and figures by name.
+#include "app/evaluation/pareto/measured_work.hpp"
 
 #include <algorithm>
 #include <sstream>
@@ -61,6 +61,12 @@ Setting setting_from(const std::vector<Parameter>& parameters, const std::string
     setting[at] = static_cast<std::size_t>(value - values.begin());
   }
   return setting;
+}
+
+std::size_t place_of(const MeasuredWork& work, const std::string& figure) {
+  for (std::size_t i = 0; i < work.figures.size(); ++i)
+    if (work.figures[i].name == figure) return i;
+  throw Error(work.name + ": nothing called " + figure + " is measured");
 }
 
 }  // namespace roomradar

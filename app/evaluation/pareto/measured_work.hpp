@@ -1,15 +1,42 @@
-// measured_setting.hpp: work that trades time for accuracy, such as a prescan or a run, with its parameters,
-// measured quantities (figures) and scenes.
+// measured_work.hpp: work that trades time for accuracy, such as a prescan or a run, with its parameters, the
+// values to measure, measured quantities (figures) and scenes.
 #pragma once
 #include <cstddef>
 #include <functional>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "app/evaluation/pareto/parameter.hpp"
-
 namespace roomradar {
+
+/// One field of ScanQuality or RunQuality, and the values to measure, as words.
+struct Parameter {
+  std::string name;                ///< name of the field and of the CSV column
+  std::vector<std::string> words;  ///< fastest first
+  std::size_t defaults = 0;        ///< index of the default in `words`
+  /// True: the parameter sets the amount of work (load), not its quality. It is never changed together with
+  /// other parameters. Settings that change a load parameter are never on a Pareto front.
+  bool is_load = false;
+};
+
+/// A value for each parameter, as index in Parameter::words.
+using Setting = std::vector<std::size_t>;
+
+Setting default_setting(const std::vector<Parameter>& parameters);
+
+/// Returns true if all load parameters have their defaults.
+bool has_default_load(const std::vector<Parameter>& parameters, const Setting& setting);
+
+/// Returns the differences from the default, such as "radar sampled, radar_px 32", or "default" if there are
+/// none.
+std::string describe(const std::vector<Parameter>& parameters, const Setting& setting);
+
+/// Returns the differences from the default as one word, such as "radar=sampled,radar_px=32", or "default".
+std::string setting_words(const std::vector<Parameter>& parameters, const Setting& setting);
+/// Returns the setting that setting_words() wrote. Throws Error if a parameter or its value is unknown, or a
+/// parameter occurs twice.
+Setting setting_from(const std::vector<Parameter>& parameters, const std::string& words);
 
 enum class FigureKind {
   kTime,    ///< a time, summarised by the median because it is noisy
