@@ -12,7 +12,7 @@
 #include <opencv2/imgproc.hpp>
 #include <string>
 
-#include "app/calibration/board_pose.hpp"
+#include "app/calibration/checkerboard.hpp"
 #include "app/sources/formats/median.hpp"
 #include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"

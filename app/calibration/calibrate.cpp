@@ -13,7 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "app/calibration/board_pose.hpp"
 #include "app/calibration/board_views.hpp"
 #include "app/calibration/calibration.hpp"
 #include "app/calibration/checkerboard.hpp"

@@ -1,6 +1,11 @@
-// checkerboard.hpp: the dimensions of a checkerboard.
+// checkerboard.hpp: a checkerboard: its dimensions, and its pose from its corners in one image.
 #pragma once
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "mapping/types/intrinsics.hpp"
+#include "mapping/types/lens.hpp"
 
 namespace roomradar {
 
@@ -16,5 +21,10 @@ struct Board {
 inline Eigen::Vector3d corner_board(const Board& board, int column, int row) {
   return {column * board.square_m, row * board.square_m, 0.0};
 }
+
+/// Returns T_camera_board, the checkerboard's pose in the camera frame, computed with OpenCV's solvePnP.
+/// @param corners_px  all inner corners of the checkerboard, row by row, in the distorted image
+Eigen::Isometry3d pose_of_board(const std::vector<Eigen::Vector2d>& corners_px, const Board& board,
+                                const Intrinsics& camera, const Lens& lens);
 
 }  // namespace roomradar

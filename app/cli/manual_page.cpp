@@ -7,7 +7,6 @@
 
 #include "app/cli/help_topics.hpp"
 #include "app/cli/options/command_tree.hpp"
-#include "app/cli/options/option_groups.hpp"
 #include "mapping/types/system/version.hpp"
 
 namespace roomradar {

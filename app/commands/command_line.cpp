@@ -16,7 +16,6 @@
 #include "app/cli/manual_page.hpp"
 #include "app/cli/options/command_tree.hpp"
 #include "app/cli/options/option_checks.hpp"
-#include "app/cli/options/option_groups.hpp"
 #include "app/cli/session_folder.hpp"
 #include "app/cli/usage_fault.hpp"
 #include "app/commands/commands.hpp"

@@ -14,7 +14,7 @@
 #include "app/building/building_map_commands.hpp"
 #include "app/cli/report.hpp"
 #include "app/cli/shell_line.hpp"
-#include "app/page/map_page.hpp"
+#include "app/page/room_page.hpp"
 #include "app/sources/recordings/recording_kinds.hpp"
 #include "mapping/building/building_info.hpp"
 #include "mapping/map/level_surfaces.hpp"

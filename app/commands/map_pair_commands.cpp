@@ -8,7 +8,7 @@
 #include "app/cli/report.hpp"
 #include "app/media/map_picture.hpp"
 #include "app/media/picture_file.hpp"
-#include "app/page/map_page.hpp"
+#include "app/page/room_page.hpp"
 #include "mapping/map/map_merge.hpp"
 #include "mapping/map/map_writer.hpp"
 #include "mapping/types/system/error.hpp"

@@ -1,15 +1,73 @@
-// farm.hpp: runs the jobs of a plan on this machine's processors.
+// farm.hpp: runs the jobs of a plan on this machine's processors, each in its own process.
 #pragma once
 #include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
+#include <queue>
 #include <string>
+#include <utility>
+#include <vector>
 
-#include "app/farm/job_process.hpp"
-#include "app/farm/schedule.hpp"
+#include "app/farm/farm_plan.hpp"
 
 namespace roomradar {
+
+enum class JobState {
+  kNotPlanned,
+  kWaiting,  ///< waits for a job that it needs, or for its turn
+  kRunning,
+  kPresent,  ///< had results before this run
+  kDone,
+  kFailed,   ///< failed in this run, or before it and is not run again
+  kSkipped,  ///< a job that it needs failed
+};
+
+/// Assigns the jobs of a plan, the most expensive first, and each after the jobs that it needs.
+class Schedule {
+ public:
+  explicit Schedule(const FarmPlan& plan);
+
+  /// Returns the next job, and marks it as running. Returns nullopt if no job can begin now.
+  std::optional<std::size_t> next();
+  /// Records the outcome of a running job. If it failed, the jobs that need it are skipped.
+  void finish(std::size_t job, bool is_done);
+
+  /// Returns true if no job is waiting or running.
+  [[nodiscard]] bool is_over() const { return left_ == 0; }
+  [[nodiscard]] JobState state(std::size_t job) const { return states_[job]; }
+  [[nodiscard]] std::size_t count(JobState state) const;
+
+ private:
+  std::vector<JobState> states_;
+  std::vector<double> costs_;
+  std::vector<std::size_t> open_needs_;  ///< per job: number of needed jobs that are not done
+  std::vector<std::vector<std::size_t>> needed_by_;
+  std::priority_queue<std::pair<double, std::ptrdiff_t>> ready_;  ///< cost, and the negative index
+  std::size_t left_ = 0;
+
+  void make_ready(std::size_t job);
+  void skip_those_that_need(std::size_t job);
+};
+
+struct JobResult {
+  bool is_done = false;
+  std::string fault;  ///< reason of a failure, as a sentence
+  double wall_s = 0.0;
+  double cpu_s = 0.0;    ///< CPU time of the process
+  double peak_mb = 0.0;  ///< peak memory, 10^6 bytes
+};
+
+/// Returns true once the farm should end. Called on several threads.
+using IsCancelled = std::function<bool()>;
+
+/// Runs a job in its folder, and waits for its end. The job's output goes to NAME.log. The process is killed
+/// when the calling thread ends or `is_cancelled` returns true. Does not throw: a job that cannot be run
+/// counts as failed.
+/// @param program  path of the program, such as /proc/self/exe
+JobResult run_job(const FarmPlan& plan, std::size_t job, const std::filesystem::path& program,
+                  const IsCancelled& is_cancelled);
 
 /// State of a farm during or after its run.
 struct FarmState {

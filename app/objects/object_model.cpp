@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "app/models/model.hpp"
-#include "app/objects/textured_lod.hpp"
+#include "app/objects/object_lod.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {

@@ -1,5 +1,6 @@
 // room_page.hpp: one HTML file that shows a scanned room, or the changes between two scans, in a browser.
 #pragma once
+#include <Eigen/Geometry>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -7,6 +8,7 @@
 
 #include "mapping/coverage/hole.hpp"
 #include "mapping/map/map_diff.hpp"
+#include "mapping/map/map_folder.hpp"
 #include "mapping/texture/surface_texture.hpp"
 #include "mapping/types/mesh.hpp"
 #include "mapping/types/trajectory.hpp"
@@ -35,5 +37,27 @@ struct RoomPage {
 /// poses of the trajectory. An existing file is replaced only by the complete new file.
 /// @throws Error if a room has no triangles, or the file cannot be written
 void write_room_page(const RoomPage& page, const std::filesystem::path& path);
+
+/// Returns true if the path ends in .html.
+bool is_page(const std::filesystem::path& path);
+
+/// Writes a page of a map, with the surface, the texture if the map has one, the scan's camera trajectory and
+/// the holes. Throws Error as write_room_page() does, or if a file of the map is damaged.
+/// @param folder  the map's folder; its name becomes the title
+void write_map_page(const SavedMap& map, const std::filesystem::path& folder,
+                    const std::filesystem::path& path);
+
+/// A loaded map and its folder.
+struct NamedMap {
+  const SavedMap& map;
+  std::string folder;
+};
+
+/// Writes a page of two maps of one room, with the objects that appeared and vanished between them. Throws
+/// Error as write_map_page() does.
+/// @param T_a_b    transforms points from b's world frame to a's world frame
+/// @param changes  in the world frame of map a
+void write_diff_page(const NamedMap& a, const NamedMap& b, const Eigen::Isometry3d& T_a_b,
+                     std::span<const Change> changes, const std::filesystem::path& path);
 
 }  // namespace roomradar

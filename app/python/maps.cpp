@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "app/page/map_page.hpp"
+#include "app/page/room_page.hpp"
 #include "app/python/arrays.hpp"
 #include "app/python/bindings.hpp"
 #include "app/python/long_calls.hpp"

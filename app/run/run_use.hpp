@@ -11,7 +11,7 @@
 #include <string>
 
 #include "app/run/growing_file.hpp"
-#include "app/session/frame_use.hpp"
+#include "app/session/frame_result.hpp"
 
 namespace roomradar {
 

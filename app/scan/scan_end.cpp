@@ -6,7 +6,7 @@
 
 #include "app/cli/interrupt.hpp"
 #include "app/cli/shell_line.hpp"
-#include "app/scan/command_to_resume.hpp"
+#include "app/scan/unfinished_scan.hpp"
 #include "app/sources/recordings/spooled_source.hpp"
 
 namespace roomradar {

@@ -2,16 +2,18 @@
 // MAP.unfinished.
 #include "app/scan/unfinished_scan.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "app/cli/interrupt.hpp"
 #include "app/cli/open_source.hpp"
-#include "app/scan/command_to_resume.hpp"
+#include "app/cli/shell_line.hpp"
 #include "app/sources/recordings/spooled_source.hpp"
 #include "mapping/scan_memory.hpp"
 #include "mapping/storage/sha256.hpp"
@@ -158,6 +160,17 @@ std::unique_ptr<Checkpoints> open_checkpoints(const fs::path& folder, double eve
 }
 
 }  // namespace
+
+std::string command_to_resume(const PrescanOptions& options) {
+  std::vector<std::string> words = options.line;
+  if (words.empty()) {
+    words = {"roomradar", "prescan", options.source, "--map", options.map};
+    if (!options.calibration.empty()) words.insert(words.end(), {"--calibration", options.calibration});
+    if (options.window) words.emplace_back("--window");
+  }
+  if (std::find(words.begin(), words.end(), "--resume") == words.end()) words.emplace_back("--resume");
+  return shell_line(words);
+}
 
 ScanStart start_scan(const PrescanOptions& options) {
   ScanStart start;

@@ -1,7 +1,9 @@
-// unfinished_scan.hpp: decides whether a prescan is new, resumed, or extends a map.
+// unfinished_scan.hpp: decides whether a prescan is new, resumed, or extends a map. The command that resumes
+// it.
 #pragma once
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "app/cli/options/prescan_options.hpp"
 #include "app/sources/formats/input_report.hpp"
@@ -10,6 +12,9 @@
 #include "mapping/types/frame_source.hpp"
 
 namespace roomradar {
+
+/// Returns the command that continues this scan, as a line for a shell: the line as given, with --resume.
+[[nodiscard]] std::string command_to_resume(const PrescanOptions& options);
 
 /// Input of a prescan.
 struct ScanStart {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "app/objects/shape.hpp"
-#include "app/session/frame_use.hpp"
 #include "app/session/session_config.hpp"
 #include "app/session/tiles/tile_window.hpp"
 #include "dynamic/foreground/foreground.hpp"
@@ -24,6 +23,11 @@
 #include "radar/gl/gpu_mesh.hpp"
 
 namespace roomradar {
+
+/// Views of the room that a FrameScene rendered for the expected depth, and room triangles drawn in them.
+struct RoomDrawn {
+  std::size_t views = 0, triangles = 0;
+};
 
 /// Depth of the static room in a camera's image.
 struct ExpectedView {

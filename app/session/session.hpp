@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "app/objects/virtual_object.hpp"
+#include "app/session/apply_quality.hpp"
 #include "app/session/frame_result.hpp"
 #include "app/session/frame_scene.hpp"
 #include "app/session/map_updater.hpp"
 #include "app/session/object_set.hpp"
 #include "app/session/picture_composer.hpp"
-#include "app/session/quality_schedule.hpp"
 #include "app/session/session_config.hpp"
 #include "app/session/session_room.hpp"
 #include "app/session/tiles/building_tracker.hpp"

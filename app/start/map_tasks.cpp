@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "app/cli/registered_maps.hpp"
-#include "app/page/map_page.hpp"
+#include "app/page/room_page.hpp"
 #include "app/start/map_list.hpp"
 #include "mapping/map/map_export.hpp"
 #include "mapping/map/map_folder.hpp"

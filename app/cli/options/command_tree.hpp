@@ -1,8 +1,14 @@
-// command_tree.hpp: the commands of the command line, and their subcommands, such as `map export`.
+// command_tree.hpp: the commands of the command line, their subcommands, such as `map export`, and their
+// options in the order of the help.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
 
 namespace roomradar {
 
@@ -21,5 +27,12 @@ App* command_named(App& app, const std::string& name) {
     if (command->check_name(name)) return command;
   return nullptr;
 }
+
+/// Assigns the options of all commands to groups, and adds examples to the help. Options without a group come
+/// last, under "Other". Call after all commands were added.
+void arrange_help(CLI::App& app);
+
+/// Returns the visible options of a command, positionals first, in the order of the help.
+std::vector<const CLI::Option*> options_in_order(const CLI::App& command);
 
 }  // namespace roomradar

@@ -13,6 +13,7 @@
 
 namespace roomradar {
 
+/// Image sizes and numbers of frames for one measurement of a setting.
 struct TradeScale {
   int scan_px = 640;  ///< width of the simulated 4:3 depth images of scans
   int scan_frames = 75;
@@ -40,6 +41,7 @@ inline constexpr std::size_t kFewestTradeFrames = 30;
 /// as ground truth.
 std::vector<Frame> frames_of_recording(const std::string& folder, std::int64_t count);
 
+/// Frame source in memory, so that measurements exclude the time of reading or rendering frames.
 class KeptFrames final : public FrameSource {
  public:
   /// `frames` must outlive this object.

@@ -8,7 +8,6 @@
 #include <optional>
 #include <vector>
 
-#include "app/sim/scenarios/scenario.hpp"
 #include "app/sim/sensor/camera_path.hpp"
 #include "app/sim/sensor/kinect_depth.hpp"
 #include "app/sim/sensor/movers.hpp"

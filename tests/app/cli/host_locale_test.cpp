@@ -14,7 +14,7 @@
 #include "app/building/building_summary.hpp"
 #include "app/cli/open_source.hpp"
 #include "app/cli/report.hpp"
-#include "app/page/map_page.hpp"
+#include "app/page/room_page.hpp"
 #include "app/quality/presets.hpp"
 #include "app/session/script/script.hpp"
 #include "app/sim/simulate.hpp"

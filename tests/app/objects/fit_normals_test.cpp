@@ -1,5 +1,5 @@
 // fit_normals_test.cpp: fitted normals are as close to the fine mesh's as a mean over each triangle allows.
-#include "app/objects/fit_normals.hpp"
+#include "app/objects/object_lod.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "app/page/map_page.hpp"
 #include "app/page/page_template.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "tests/mapping/texture/texture_scene.hpp"

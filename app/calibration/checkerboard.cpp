@@ -1,5 +1,5 @@
-// board_pose.cpp: converts corners and camera for OpenCV's solvePnP.
-#include "app/calibration/board_pose.hpp"
+// checkerboard.cpp: converts corners and camera for OpenCV's solvePnP.
+#include "app/calibration/checkerboard.hpp"
 
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/eigen.hpp>

@@ -1,5 +1,5 @@
-// option_groups.cpp: one table per command: groups in the order of the help, and two examples.
-#include "app/cli/options/option_groups.hpp"
+// command_tree.cpp: one table per command: groups in the order of the help, and two examples.
+#include "app/cli/options/command_tree.hpp"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -7,8 +7,6 @@
 #include <string>
 #include <utility>
 #include <vector>
-
-#include "app/cli/options/command_tree.hpp"
 
 namespace roomradar {
 namespace {

@@ -1,5 +1,5 @@
-// frame_use.cpp: reads the counts from the scene.
-#include "app/session/frame_use.hpp"
+// frame_result.cpp: counts what a frame used.
+#include "app/session/frame_result.hpp"
 
 #include "app/session/frame_scene.hpp"
 #include "app/session/session_room.hpp"
