@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/sources/video/video_module.hpp"
+#include "app/sources/video/video_codecs.hpp"
 #include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"

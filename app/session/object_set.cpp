@@ -10,10 +10,10 @@
 #include <utility>
 
 #include "app/physics/collision_queries.hpp"
+#include "app/physics/contact_system.hpp"
 #include "app/physics/depenetration.hpp"
 #include "app/physics/physics.hpp"
 #include "app/physics/placement/placement.hpp"
-#include "app/physics/sleeper_contacts.hpp"
 #include "app/session/object_overlap.hpp"
 #include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"

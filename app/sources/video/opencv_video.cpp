@@ -1,5 +1,5 @@
 // opencv_video.cpp: the video codec module: FFmpeg through OpenCV.
-#include "app/sources/video/opencv_video.hpp"
+#include "app/sources/video/video_codecs.hpp"
 
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>

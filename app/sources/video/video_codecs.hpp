@@ -1,4 +1,4 @@
-// video_codecs.hpp: interface between the program and its video codec module (video_module.hpp).
+// video_codecs.hpp: interface between the program and its video codec module, and the module's loading.
 #pragma once
 #include <cstddef>
 #include <memory>
@@ -43,4 +43,17 @@ class VideoCodecs {
                                                              int width_px, int height_px) const = 0;
 };
 
+/// Returns the codecs of the module roomradar-video.so, which is loaded on the first call and never unloaded.
+/// The module is separate because OpenCV's video library loads 240 other libraries, too many for every start
+/// of the program. The module is first searched for in the folder of the binary that contains this function.
+/// The next candidates are lib/roomradar in the parent and grandparent of that folder, in the configured
+/// prefix, and in /usr. Thread safe.
+/// @throws Error if the module is not installed, cannot be loaded, or has a different version from the
+/// program's
+const VideoCodecs& video_codecs();
+
 }  // namespace roomradar
+
+/// The entry point of the module. Returns the codecs, or nullptr if `version` is not the version that the
+/// module was built with.
+extern "C" const roomradar::VideoCodecs* roomradar_video_codecs(const char* version);

@@ -4,7 +4,7 @@
 #include <exception>
 #include <string>
 
-#include "app/sources/video/video_module.hpp"
+#include "app/sources/video/video_codecs.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {

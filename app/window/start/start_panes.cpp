@@ -1,12 +1,20 @@
-// start_lists.cpp: rows of two lines; the chosen row of the active list is highlighted.
+// start_panes.cpp: rows of two lines, of which the chosen one is highlighted; buttons; dialogs.
 #include "app/window/start/start_panes.hpp"
 
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string>
+#include <utility>
 
 namespace roomradar {
+
+// ---- the lists of sources and maps, and the chosen entry ----
+
 namespace {
 
 struct Row {
@@ -146,7 +154,8 @@ void draw_source_detail(const SourceEntry& source, const look::Fonts& fonts) {
       "that is chosen below.");
   ImGui::Spacing();
   if (!source.check_command.empty())
-    ImGui::TextWrapped("To see first what this recording holds, and what is missing: %s", source.check_command.c_str());
+    ImGui::TextWrapped("To see first what this recording holds, and what is missing: %s",
+                       source.check_command.c_str());
   if (source.kind == SourceKind::kKinect)
     ImGui::TextWrapped(
         "To scan well: walk slowly, 0.5 to 4 m from the surfaces, look at things from several sides, and "
@@ -216,6 +225,192 @@ void draw_detail(const Area& area, const StartState& state, const ExaminedMaps& 
   else if (state.active == StartList::kSources && source != nullptr)
     draw_source_detail(*source, fonts);
   look::end_pane();
+}
+
+// ---- buttons and their keys: one table of actions ----
+
+namespace {
+
+struct ActionButton {
+  const char* label;
+  const char* key_name;
+  int key;
+  StartAction action;
+};
+constexpr std::array<ActionButton, 8> kActions = {{{"Scan", "S", GLFW_KEY_S, StartAction::kScan},
+                                                   {"Play", "P", GLFW_KEY_P, StartAction::kPlay},
+                                                   {"Scan more", "M", GLFW_KEY_M, StartAction::kScanMore},
+                                                   {"Compare", "C", GLFW_KEY_C, StartAction::kCompare},
+                                                   {"Export", "E", GLFW_KEY_E, StartAction::kExport},
+                                                   {"Rename", "R", GLFW_KEY_R, StartAction::kRename},
+                                                   {"Delete", "Del", GLFW_KEY_DELETE, StartAction::kDelete},
+                                                   {"Doctor", "D", GLFW_KEY_D, StartAction::kDoctor}}};
+
+}  // namespace
+
+std::optional<StartAction> draw_action_bar(const Area& area, const StartState& state,
+                                           const look::Fonts& fonts) {
+  look::begin_pane("actions", area, look::kPanel);
+  const float right = area.width - ImGui::GetStyle().WindowPadding.x, gap = look::px(6.0F);
+  std::optional<StartAction> clicked;
+  float x = 0.0F;
+  for (const ActionButton& each : kActions) {
+    const std::string text = std::string(each.label) + "  " + each.key_name;
+    const float wide = ImGui::CalcTextSize(text.c_str()).x + 2.0F * ImGui::GetStyle().FramePadding.x;
+    if (x > 0.0F && x + gap + wide <= right) ImGui::SameLine(0.0F, gap);
+    const bool is_lit = each.action == first_action(state), enabled = why_not(state, each.action).empty();
+    if (look::button(each.label, each.key_name, is_lit && enabled, {0, 0}, enabled)) clicked = each.action;
+    x = ImGui::GetItemRectMax().x - area.x;
+  }
+  ImGui::PushFont(fonts.small);
+  ImGui::TextDisabled("\u2191 \u2193 choose   Tab other list   Enter %s   + - text size   Ctrl+Q quit",
+                      first_action(state) == StartAction::kPlay ? "Play" : "Scan");
+  ImGui::PopFont();
+  look::end_pane();
+  return clicked;
+}
+
+std::optional<StartAction> action_of_key(int key) {
+  for (const ActionButton& each : kActions)
+    if (key == each.key) return each.action;
+  return std::nullopt;
+}
+
+StartAction first_action(const StartState& state) {
+  return state.active == StartList::kMaps ? StartAction::kPlay : StartAction::kScan;
+}
+
+// ---- questions and notices ----
+
+namespace {
+
+struct DialogButton {
+  const char* label;
+  const char* key;
+  DialogAnswer answer;
+};
+
+std::vector<DialogButton> buttons_of(DialogKind kind) {
+  switch (kind) {
+    case DialogKind::kNewMap:
+      return {{"Scan", "Enter", DialogAnswer::kYes}, {"Back", "Esc", DialogAnswer::kNo}};
+    case DialogKind::kRename:
+      return {{"Rename", "Enter", DialogAnswer::kYes}, {"Back", "Esc", DialogAnswer::kNo}};
+    case DialogKind::kDelete:
+      return {{"Delete", "Enter", DialogAnswer::kYes}, {"Keep", "Esc", DialogAnswer::kNo}};
+    case DialogKind::kExport:
+      return {{".html", "H", DialogAnswer::kPage},
+              {".glb", "G", DialogAnswer::kGlb},
+              {".ply", "P", DialogAnswer::kPly},
+              {"Back", "Esc", DialogAnswer::kNo}};
+    case DialogKind::kCompare:
+      return {{"Compare", "Enter", DialogAnswer::kYes}, {"Back", "Esc", DialogAnswer::kNo}};
+    default:
+      return {{"Close", "Enter", DialogAnswer::kNo}};
+  }
+}
+
+bool asks_for_name(const StartDialog& dialog) {
+  return dialog.kind == DialogKind::kNewMap || dialog.kind == DialogKind::kRename;
+}
+
+void draw_name(StartDialog& dialog) {
+  if (dialog.is_new) ImGui::SetKeyboardFocusHere();
+  dialog.is_new = false;
+  ImGui::SetNextItemWidth(-1.0F);
+  ImGui::InputText("##name", dialog.name.data(), dialog.name.size(), ImGuiInputTextFlags_AutoSelectAll);
+  if (dialog.fault.empty()) return;
+  ImGui::PushStyleColor(ImGuiCol_Text, look::kWarn);
+  ImGui::TextWrapped("%s", dialog.fault.c_str());
+  ImGui::PopStyleColor();
+}
+
+void draw_choices(StartDialog& dialog) {
+  for (int i = 0; i < static_cast<int>(dialog.choices.size()); ++i) {
+    const std::string& text = dialog.choices[static_cast<std::size_t>(i)];
+    ImGui::PushID(i);
+    if (ImGui::Selectable(look::shortened(text, ImGui::GetContentRegionAvail().x).c_str(),
+                          i == dialog.choice))
+      dialog.choice = i;
+    if (i == dialog.choice) ImGui::SetScrollHereY(0.5F);
+    ImGui::PopID();
+  }
+}
+
+void draw_lines(const StartDialog& dialog) {
+  for (const DialogLine& line : dialog.lines) {
+    ImGui::PushStyleColor(ImGuiCol_Text, line.colour);
+    ImGui::TextWrapped("%s", line.text.c_str());
+    ImGui::PopStyleColor();
+  }
+}
+
+/// Returns the height of the lines and choices in a dialog of this width.
+float content_height(const StartDialog& dialog, float wrap) {
+  const float gap = ImGui::GetStyle().ItemSpacing.y;
+  float height = 0.0F;
+  for (const DialogLine& line : dialog.lines)
+    height += ImGui::CalcTextSize(line.text.c_str(), nullptr, false, wrap).y + gap;
+  height += static_cast<float>(dialog.choices.size()) * (ImGui::GetTextLineHeight() + gap);
+  return height;
+}
+
+}  // namespace
+
+DialogAnswer draw_dialog(float width, float height, StartDialog& dialog, const look::Fonts& fonts) {
+  const float margin = look::px(16.0F), beside = look::px(22.0F),
+              line = ImGui::GetTextLineHeightWithSpacing();
+  const float wide = std::min(look::px(600.0F), width - 2.0F * margin);
+  const float wrap = wide - 2.0F * beside - ImGui::GetStyle().ScrollbarSize;
+  const float button = ImGui::GetFrameHeightWithSpacing(), heading = line + look::px(10.0F);
+  const float fault =
+      dialog.fault.empty() ? 0.0F : ImGui::CalcTextSize(dialog.fault.c_str(), nullptr, false, wrap).y + line;
+  const float fixed = heading + button + look::px(38.0F) + (asks_for_name(dialog) ? button + fault : 0.0F);
+  const float content =
+      std::min(content_height(dialog, wrap) + look::px(4.0F), height - 2.0F * margin - fixed);
+  look::begin_cover("cover", width, height);
+  ImGui::SetCursorScreenPos({0.5F * (width - wide), 0.5F * (height - fixed - content)});
+  ImGui::PushStyleColor(ImGuiCol_ChildBg, look::kRaised);
+  ImGui::PushStyleColor(ImGuiCol_FrameBg, look::kGround);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {beside, look::px(16.0F)});
+  ImGui::BeginChild("dialog", {wide, fixed + content}, /*border=*/true, ImGuiWindowFlags_NoNav);
+  ImGui::PushFont(fonts.large);
+  ImGui::TextUnformatted(look::shortened(dialog.heading, wide - 2.0F * beside).c_str());
+  ImGui::PopFont();
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.0F, 0.0F});
+  ImGui::BeginChild("content", {0.0F, content}, /*border=*/false, ImGuiWindowFlags_NoNav);
+  draw_lines(dialog);
+  draw_choices(dialog);
+  ImGui::EndChild();
+  ImGui::PopStyleVar();
+  if (asks_for_name(dialog)) draw_name(dialog);
+  DialogAnswer answer = std::exchange(dialog.pressed, DialogAnswer::kNone);
+  ImGui::Dummy({0.0F, 0.0F});
+  for (const DialogButton& each : buttons_of(dialog.kind)) {
+    if (look::button(each.label, each.key,
+                     each.answer != DialogAnswer::kNo || dialog.kind == DialogKind::kNotice))
+      answer = each.answer;
+    ImGui::SameLine();
+  }
+  ImGui::EndChild();
+  ImGui::PopStyleVar();
+  ImGui::PopStyleColor(2);
+  ImGui::End();
+  return answer;
+}
+
+DialogAnswer answer_of_key(int key, StartDialog& dialog) {
+  const bool is_enter = key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER;
+  if (key == GLFW_KEY_ESCAPE || (is_enter && dialog.kind == DialogKind::kNotice)) return DialogAnswer::kNo;
+  if (dialog.kind == DialogKind::kExport) {
+    if (key == GLFW_KEY_H || is_enter) return DialogAnswer::kPage;
+    if (key == GLFW_KEY_G) return DialogAnswer::kGlb;
+    return key == GLFW_KEY_P ? DialogAnswer::kPly : DialogAnswer::kNone;
+  }
+  const int last = static_cast<int>(dialog.choices.size()) - 1;
+  if (key == GLFW_KEY_UP) dialog.choice = std::max(dialog.choice - 1, 0);
+  if (key == GLFW_KEY_DOWN) dialog.choice = std::min(dialog.choice + 1, std::max(last, 0));
+  return is_enter ? DialogAnswer::kYes : DialogAnswer::kNone;
 }
 
 }  // namespace roomradar

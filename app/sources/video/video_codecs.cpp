@@ -1,5 +1,5 @@
-// video_module.cpp: searches the module, loads it with dlopen(), and checks its version.
-#include "app/sources/video/video_module.hpp"
+// video_codecs.cpp: searches the module, loads it with dlopen(), and checks its version.
+#include "app/sources/video/video_codecs.hpp"
 
 #include <dlfcn.h>
 #include <link.h>
@@ -9,7 +9,6 @@
 #include <string>
 #include <system_error>
 
-#include "app/sources/video/opencv_video.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/version.hpp"
 
