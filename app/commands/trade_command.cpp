@@ -1,10 +1,15 @@
 // trade_command.cpp: roomradar trade: measures time against accuracy.
 #include "app/commands/commands.hpp"
 
+#include <sys/utsname.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <optional>
+#include <string>
+#include <thread>
 
 #include "app/cli/deferred_errors.hpp"
 #include "app/cli/interrupt.hpp"
@@ -13,7 +18,6 @@
 #include "app/commands/farm_command.hpp"
 #include "app/evaluation/pareto/setting_choice.hpp"
 #include "app/evaluation/pareto/sweep_jobs.hpp"
-#include "app/evaluation/trade/machine.hpp"
 #include "app/evaluation/trade/prescan_work.hpp"
 #include "app/evaluation/trade/run_work.hpp"
 #include "app/evaluation/trade/table1.hpp"
@@ -26,9 +30,40 @@
 #include "app/sim/sensor/sim_options.hpp"
 #include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
+#include "mapping/types/system/run_sandboxed.hpp"
+#include "radar/gl/gl_context.hpp"
 
 namespace roomradar {
 namespace {
+
+/// The machine on which a measurement is made.
+struct Machine {
+  std::string processor;  ///< model name; "unknown processor" if not available
+  unsigned threads = 0;
+  std::string system;    ///< such as "Linux 6.1"
+  std::string renderer;  ///< name of the OpenGL renderer
+};
+
+std::string processor() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with("model name")) return line.substr(std::min(line.find(':') + 2, line.size()));
+  return "unknown processor";
+}
+
+/// Returns the description of this machine. A child process queries the renderer, so this process creates no
+/// GL context. Throws Error if there is no renderer.
+Machine this_machine() {
+  constexpr unsigned kMost_s = 60;
+  constexpr std::size_t kMost_bytes = std::size_t{1} << 38U;
+  Machine machine{
+      .processor = processor(), .threads = std::thread::hardware_concurrency(), .system = {}, .renderer = {}};
+  utsname system{};
+  if (uname(&system) == 0) machine.system = std::string(system.sysname) + " " + system.release;
+  machine.renderer = run_sandboxed([] { return GlContext().renderer(); }, "OpenGL does not say its renderer",
+                                   kMost_s, kMost_bytes);
+  return machine;
+}
 
 TradeScale scale_of(const TradeOptions& options) { return options.quick ? kQuickScale : TradeScale{}; }
 

@@ -7,17 +7,22 @@
 #include <cstdio>
 #include <filesystem>
 #include <future>
+#include <string>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "app/cli/open_source.hpp"
+#include "app/cli/options/object_options.hpp"
+#include "app/cli/options/run_options.hpp"
 #include "app/objects/object_file.hpp"
 #include "app/objects/object_model.hpp"
 #include "app/quality/quality_json.hpp"
-#include "app/run/object_script.hpp"
-#include "app/run/opened_building.hpp"
 #include "app/session/apply_quality.hpp"
+#include "app/session/script/script.hpp"
 #include "app/session/script/session_events.hpp"
+#include "app/session/tiles/tile_window.hpp"
+#include "mapping/building/building_map.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/map/map_writer.hpp"
 #include "mapping/odometry/up_direction.hpp"
@@ -26,6 +31,99 @@
 
 namespace roomradar {
 namespace {
+
+// ---- the script of a run without --script ----
+
+constexpr double kDropHeight_m = 0.05;  // above a point that the user gave
+
+/// Returns true if an object of the script has this name.
+bool is_taken(const Script& script, const std::string& name) {
+  return std::any_of(script.events.begin(), script.events.end(),
+                     [&](const ScriptEvent& event) { return object_of(event.action) == name; });
+}
+
+std::string free_name(const Script& script, const ObjectOption& object) {
+  const std::string stem = object_name(object.source.mesh);
+  std::string name = stem;
+  for (int number = 2; is_taken(script, name); ++number) name = stem + std::to_string(number);
+  return name;
+}
+
+/// Returns a script that adds the objects and drops each of them. An object is dropped from 5 cm above its
+/// given point, or above a level surface in view if no point is given. A single object is named kOnlyObject.
+/// Several objects are named after their files.
+Script drop_objects(const std::vector<ObjectOption>& objects) {
+  Script script;
+  for (const ObjectOption& object : objects) {
+    const std::string name = objects.size() == 1 ? kOnlyObject : free_name(script, object);
+    DropObject drop{.name = name, .position_world = object.at_world};
+    if (object.at_world) drop.height_m = kDropHeight_m;
+    script.events.push_back({.action = AddObject{name, object.source, object.material}, .frame = 0});
+    script.events.push_back({.action = drop, .frame = 0});
+  }
+  return script;
+}
+
+// ---- the map of a building ----
+
+struct OpenedBuilding {
+  SavedMap map;  ///< keyframes and bounds; surface and octree are empty
+  TileWindowConfig tiles;
+};
+
+constexpr double kMB = 1e6;
+constexpr double kKeyframesPart = 0.2;  // of the memory limit
+
+void require_possible_in_building(const RunOptions& options, const Script& script) {
+  const auto refuse = [&](const std::string& option, const char* why) {
+    throw Error(option + ": " + options.map + " is a building, and " + why);
+  };
+  constexpr const char* kRoomsOnly = "changes can be committed to the map of a room only";
+  if (options.commit_after_s) refuse("--commit-changes", kRoomsOnly);
+  if (!options.save_map.empty()) refuse("--save-map", kRoomsOnly);
+  if (has<CommitChanges>(script)) refuse("commit event", kRoomsOnly);
+  if (options.poses == PoseOrigin::kRecorded)
+    refuse("--poses recorded", "its world is not that of a recording; leave the option out");
+}
+
+/// Opens the building of options.map. With options.max_memory_mb, keyframes take at most a fifth of it.
+/// Throws Error naming the file and the fault if a file is missing or damaged. Also throws Error if the run's
+/// options or its script require the map of a room: for committed changes or recorded poses.
+OpenedBuilding open_building(const RunOptions& options, const Script& script) {
+  require_possible_in_building(options, script);
+  OpenedBuilding opened;
+  opened.tiles.folder = options.map;
+  opened.tiles.building = read_building(options.map);
+  opened.tiles.choice.has_unknown = options.unknown_is_solid;
+  opened.tiles.max_process_bytes = static_cast<std::size_t>(kMB * options.max_memory_mb);
+  const BuildingInfo& building = opened.tiles.building;
+  if (building.tiles.empty()) throw Error(options.map + ": has no tiles; was any recording placed?");
+  if (options.unknown_is_solid &&
+      std::any_of(building.tiles.begin(), building.tiles.end(),
+                  [](const BuildingTile& tile) { return tile.unknown.name.empty(); }))
+    throw Error(
+        options.map +
+        ": has no frontier of unknown space, since an earlier version made it; run `roomradar building` "
+        "again with the same recordings, or add --unknown free");
+  mmap_large_allocations();  // tiles come and go: their memory goes back to the system
+
+  const double keyframes_mb = kKeyframesPart * options.max_memory_mb;
+  opened.map.keyframe_database =
+      load_building_keyframes(building, options.map, static_cast<std::size_t>(kMB * keyframes_mb));
+  release_unused_memory();
+  MapInfo& info = opened.map.info;
+  info.source = options.map;
+  info.up_source = "building";
+  info.resolution_m = building.grid.resolution_m;
+  info.keyframes = opened.map.keyframe_database.load().keyframes.size();
+  for (const BuildingTile& tile : building.tiles) {
+    info.triangles += static_cast<std::uint64_t>(std::max<std::int64_t>(tile.triangles, 0));
+    info.counts.known_world.extend(tile.surface_world);
+  }
+  return opened;
+}
+
+// ---- the run ----
 
 constexpr std::size_t kLargeFile_bytes = 4U << 20U;  // larger than a frame's images
 

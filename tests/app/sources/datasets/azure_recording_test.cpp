@@ -1,12 +1,13 @@
 // azure_recording_test.cpp: recordings by k4arecorder, a real one and written ones.
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <cstring>
 #include <opencv2/imgcodecs.hpp>
+#include <string>
 
 #include "app/sources/containers/matroska.hpp"
 #include "app/sources/recordings/folder_source.hpp"
-#include "tests/app/sources/containers/written_matroska.hpp"
 #include "tests/app/sources/sources_support.hpp"
 #include "tests/support/recordings.hpp"
 
@@ -15,11 +16,51 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::contains;
-using test::element;
 using test::error_of;
 using test::read_all;
 using test::TemporaryFolder;
 using test::write_text;
+
+std::string big_endian(std::uint64_t value, std::size_t bytes) {
+  std::string text;
+  for (std::size_t i = bytes; i-- > 0;) text += static_cast<char>(value >> (8 * i) & 0xFFU);
+  return text;
+}
+
+/// An identifier, as written in the standard, with its size in 8 bytes and its data.
+std::string element(std::uint64_t id, const std::string& data) {
+  const std::size_t id_bytes = id > 0xFFFFFF ? 4 : id > 0xFFFF ? 3 : id > 0xFF ? 2 : 1;
+  return big_endian(id, id_bytes) + big_endian(std::uint64_t{1} << 56U | data.size(), 8) + data;
+}
+std::string element(std::uint64_t id, std::uint64_t number) { return element(id, big_endian(number, 8)); }
+
+/// Video track with a bitmap header of this four-character code; without video if `code` is empty.
+std::string track(std::uint64_t number, const std::string& name, const std::string& code, int width_px = 0,
+                  int height_px = 0) {
+  std::string data = element(0xD7, number) + element(0x536E, name);
+  if (!code.empty())
+    data += element(0x86, "V_MS/VFW/FOURCC") +
+            element(0x63A2, std::string(16, '\0') + code + std::string(20, '\0')) +
+            element(0xE0, element(0xB0, static_cast<std::uint64_t>(width_px)) +
+                              element(0xBA, static_cast<std::uint64_t>(height_px)));
+  return element(0xAE, data);
+}
+
+std::string block_data(int track, int ticks, const std::string& data) {
+  return static_cast<char>(0x80 | track) + big_endian(static_cast<std::uint16_t>(ticks), 2) + '\0' + data;
+}
+
+std::string attachment(const std::string& name, const std::string& data) {
+  return element(0x1941A469, element(0x61A7, element(0x466E, name) + element(0x465C, data)));
+}
+
+/// File with ticks of 1 us.
+std::string matroska_file(const std::string& tracks, const std::string& attachments,
+                          const std::string& clusters) {
+  return element(0x1A45DFA3, element(0x4282, "matroska")) +
+         element(0x18538067, element(0x1549A966, element(0x2AD7B1, 1000)) + element(0x1654AE6B, tracks) +
+                                 attachments + clusters);
+}
 
 const std::string kCalibration = R"({"CalibrationInformation":{"Cameras":[
  {"Location":"CALIBRATION_CameraLocationD0",
@@ -35,7 +76,7 @@ const std::string kCalibration = R"({"CalibrationInformation":{"Cameras":[
 std::string depth_data(int i) {
   std::string data;
   for (int p = 0; p < 320 * 288; ++p)
-    data += test::big_endian(p == 0 ? 0U : p == 1 ? 65535U : 1000U + static_cast<unsigned>(i), 2);
+    data += big_endian(p == 0 ? 0U : p == 1 ? 65535U : 1000U + static_cast<unsigned>(i), 2);
   return data;
 }
 
@@ -57,18 +98,16 @@ std::string jpeg() {
 /// Recording of two frames 1/30 s apart, colour 5 ms after depth.
 std::string recording(const std::string& calibration = kCalibration, const std::string& depth_code = "b16g",
                       int width_px = 320) {
-  const std::string tracks = test::track(1, "COLOR", "MJPG", 1280, 720) +
-                             test::track(2, "DEPTH", depth_code, width_px, 288) + test::track(4, "IMU", "");
+  const std::string tracks = track(1, "COLOR", "MJPG", 1280, 720) +
+                             track(2, "DEPTH", depth_code, width_px, 288) + track(4, "IMU", "");
   std::string clusters;
   for (int i = 0; i < 2; ++i)
     clusters += element(
         0x1F43B675,
         element(0xE7, static_cast<std::uint64_t>(500'000 + 33'333 * i)) +
-            element(0xA0,
-                    element(0xA1, test::block_data(4, -1000, imu_data(0.499 + i / 30.0, {0, 9.81F, 0})))) +
-            element(0xA3, test::block_data(2, 0, depth_data(i))) +
-            element(0xA3, test::block_data(1, 5000, jpeg())));
-  return test::matroska_file(tracks, test::attachment("calibration.json", calibration), clusters);
+            element(0xA0, element(0xA1, block_data(4, -1000, imu_data(0.499 + i / 30.0, {0, 9.81F, 0})))) +
+            element(0xA3, block_data(2, 0, depth_data(i))) + element(0xA3, block_data(1, 5000, jpeg())));
+  return matroska_file(tracks, attachment("calibration.json", calibration), clusters);
 }
 
 TEST(AzureRecording, GivesDepthColourCamerasAndGravity) {
@@ -105,8 +144,8 @@ TEST(AzureRecording, SaysWhatIsMissing) {
   EXPECT_TRUE(contains(message_of(recording(kCalibration, "MJPG")), "of the kind 'MJPG'"));
   EXPECT_TRUE(contains(message_of(recording(kCalibration, "b16g", 333)),
                        "no mode of the device has images of 333 x 288"));
-  EXPECT_TRUE(contains(message_of(test::matroska_file(test::track(1, "VIDEO", "MJPG", 8, 8), "", "")),
-                       "no track DEPTH"));
+  EXPECT_TRUE(
+      contains(message_of(matroska_file(track(1, "VIDEO", "MJPG", 8, 8), "", "")), "no track DEPTH"));
   EXPECT_TRUE(contains(message_of(element(0x1A45DFA3, "")), "contains no segment"));
 }
 
