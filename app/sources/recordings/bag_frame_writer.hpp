@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "app/sources/containers/ros_bag_writer.hpp"
+#include "app/sources/containers/ros_bag.hpp"
 #include "mapping/types/frame.hpp"
 
 namespace roomradar {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "app/sources/containers/ros_bag_writer.hpp"
+#include "app/sources/containers/ros_bag.hpp"
 #include "tests/app/sources/sources_support.hpp"
 
 namespace roomradar::test {
