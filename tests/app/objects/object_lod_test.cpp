@@ -144,7 +144,7 @@ TEST(ObjectLevels, AFinelyMeshedCubeKeepsItsEdgesSharp) {
 
 TEST(ObjectLevels, AMeshOfFewTrianglesHasNone) {
   EXPECT_TRUE(levels_of_detail(shapes::torus(30, 16, 0.08F, 0.035F, 0.01F)).empty());
-  EXPECT_TRUE(levels_of_detail({}).empty());
+  EXPECT_TRUE(levels_of_detail(Mesh{}).empty());
 }
 
 TEST(ObjectLevels, TheDrawnMeshIsCoarserTheFartherTheObjectAndNeverOffByMoreThanHalfAPixel) {
