@@ -46,7 +46,7 @@ const std::vector<std::vector<std::string>> kLayers = {
     {"app/window"},
     {"app/window/scan", "app/window/start"},
     {"app/commands"},
-    {"app"},
+    {"app", "app/programs"},
 };
 
 /// Folders that include only themselves and the folders named: finer than the layers.

@@ -9,6 +9,7 @@
 #include "app/cli/interrupt.hpp"
 #include "app/cli/options/option_checks.hpp"
 #include "app/cli/options/shared_options.hpp"
+#include "app/cli/program_beside.hpp"
 #include "app/cli/progress.hpp"
 #include "app/cli/report.hpp"
 #include "mapping/map/map_folder.hpp"
@@ -92,38 +93,6 @@ void print_summary(const BuildingOptions& options, const BuildingResult& result)
 
 }  // namespace
 
-void add_options(CLI::App& command, BuildingOptions& options) {
-  command
-      .add_option("DIR", options.folder, "folder of the building; is made, or brought up to date (required)")
-      ->required();
-  command
-      .add_option("--recordings", options.recordings,
-                  "list of the recordings, one per line: NAME: SOURCE (required)")
-      ->required()
-      ->type_name("LIST");
-  command
-      .add_option("--resolution", options.grid.resolution_m,
-                  with_default("edge of the smallest voxels, m", options.grid.resolution_m))
-      ->check(within(0.001, 1.0, "metres"))
-      ->type_name("M");
-  command
-      .add_option(
-          "--tile-edge", options.grid.edge_voxels,
-          with_default("edge of a tile in voxels, a power of two from 64 to 4096", options.grid.edge_voxels))
-      ->type_name("N");
-  command
-      .add_option("--deviation", options.deviation_m,
-                  with_default("how far simplification may move the surface, m", options.deviation_m))
-      ->check(within(0.0, 0.1, "metres"))
-      ->type_name("M");
-  add_poses_option(
-      command, options.poses,
-      "estimate the camera poses, with those of the recordings as a prior (auto) or without them\n"
-      "(tracked), or use those of the recordings, which must be in one world (recorded)");
-  add_processes_option(command, options.processes);
-  add_report_option(command, options.report);
-}
-
 int run_building(const BuildingOptions& options, const RunStage& run_stage) {
   require_writable(options.report);
   const BuildingWork work = work_of(options);
@@ -167,7 +136,7 @@ int run(const BuildingOptions& options) {
     const auto waiting = static_cast<std::int64_t>(Schedule(plan).count(JobState::kWaiting));
     Progress progress(stage, waiting);
     return run_farm(
-        plan, processes, "/proc/self/exe", Interrupt::was_pressed,
+        plan, processes, program_beside("roomradar-building"), Interrupt::was_pressed,
         [&](const FarmState& /*state*/, std::size_t job) { progress.step(plan.manifest.jobs[job].name); });
   });
 }

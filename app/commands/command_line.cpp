@@ -1,25 +1,33 @@
-// command_line.cpp: defines the commands: name, description, options, function.
+// command_line.cpp: defines the commands: name, description, options, program.
 #include "app/commands/command_line.hpp"
+
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
+#include <iostream>
 #include <memory>
+#include <new>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "app/building/building_command.hpp"
 #include "app/cli/completion.hpp"
 #include "app/cli/help_topics.hpp"
 #include "app/cli/manual_page.hpp"
 #include "app/cli/options/command_tree.hpp"
 #include "app/cli/options/option_checks.hpp"
+#include "app/cli/program_beside.hpp"
 #include "app/cli/session_folder.hpp"
 #include "app/cli/usage_fault.hpp"
-#include "app/commands/commands.hpp"
-#include "app/serve/serve_command.hpp"
+#include "mapping/building/building_info.hpp"
+#include "mapping/types/system/classic_locale.hpp"
+#include "mapping/types/system/error.hpp"
 #include "mapping/types/system/version.hpp"
 
 namespace roomradar {
@@ -76,39 +84,99 @@ std::string help_on(CLI::App& app, const std::vector<std::string>& words) {
   return command->help(parents);
 }
 
-/// Adds the command that run(Options) executes.
-/// @param work  receives that call when the command was parsed; must outlive the parsing
-/// @param line  the words of the command line, for options that have a member `line`; null: not given
+constexpr const char* kRoomradar = "roomradar";
+constexpr const char* kBuildingProgram = "roomradar-building";
+
+/// Executes the command line with another program in this program's folder, which takes this one's place.
+/// Throws Error if it is missing.
+int hand_over(const std::string& program, const std::vector<std::string>& line) {
+  const std::filesystem::path file = program_beside(program);
+  std::vector<char*> words;
+  for (const std::string& word : line) words.push_back(const_cast<char*>(word.c_str()));
+  words.push_back(nullptr);
+  std::fflush(stdout);
+  execv(file.c_str(), words.data());
+  throw Error(file.string() + ": cannot be started: " + system_reason(errno));
+}
+
+/// The line to parse, and what was found.
+struct Parsing {
+  const Commands& here;
+  std::vector<std::string> line;  ///< its words, the first is the program's name
+  std::function<int()> work{};
+};
+
+/// Adds a command.
+/// @param parsing  receives the work when the command was parsed; must outlive the parsing
+/// @param program  the program that executes the command if `execute` is null
 template <typename Options>
-CLI::App* add_command(CLI::App& app, const char* name, const char* description, std::function<int()>& work,
-                      const std::vector<std::string>* line = nullptr) {
+CLI::App* add_command(CLI::App& app, const char* name, const char* description, Parsing& parsing,
+                      int (*execute)(const Options&), const std::string& program = kRoomradar) {
   CLI::App* command = app.add_subcommand(name, description);
   const auto options = std::make_shared<Options>();
   add_options(*command, *options);
-  command->callback([command, options, &work, line] {
-    if constexpr (requires { options->line; })
-      if (line != nullptr) options->line = *line;
+  command->callback([command, options, &parsing, execute, program] {
+    if constexpr (requires { options->line; }) options->line = parsing.line;
     if constexpr (requires { complete_options(*command, *options); }) complete_options(*command, *options);
-    work = [options] { return run(*options); };
+    if (execute != nullptr)
+      parsing.work = [options, execute] { return execute(*options); };
+    else
+      parsing.work = [program, line = parsing.line] { return hand_over(program, line); };
   });
   return command;
 }
 
-void add_map_commands(CLI::App& app, std::function<int()>& work) {
+/// Adds a `map` command that a building's map has, too.
+template <typename Options>
+void add_command_of_both(CLI::App& map, const char* name, const char* description, Parsing& parsing,
+                         int (*execute)(const Options&), int (*execute_on_building)(const Options&)) {
+  CLI::App* command = map.add_subcommand(name, description);
+  const auto options = std::make_shared<Options>();
+  add_options(*command, *options);
+  command->callback([options, &parsing, execute, execute_on_building] {
+    parsing.work = [options, execute, execute_on_building, line = parsing.line] {
+      const bool has_tiles = is_building(options->map);
+      const auto chosen = has_tiles ? execute_on_building : execute;
+      return chosen != nullptr ? chosen(*options)
+                               : hand_over(has_tiles ? kBuildingProgram : kRoomradar, line);
+    };
+  });
+}
+
+void add_map_commands(CLI::App& app, Parsing& parsing) {
+  const Commands& here = parsing.here;
   CLI::App& map = *app.add_subcommand("map", "describe, verify, export, merge or compare saved maps");
   map.require_subcommand(1);
-  add_command<MapInfoOptions>(map, "info", "describe a map", work);
-  add_command<MapVerifyOptions>(map, "verify",
-                                "check every file against its checksum; exit status 1 if one differs", work);
-  add_command<MapExportOptions>(map, "export", "write the octree or the mesh for other programs", work);
-  add_command<MapMergeOptions>(
+  add_command_of_both(map, "info", "describe a map", parsing, here.map_info, here.building_info);
+  add_command_of_both(map, "verify", "check every file against its checksum; exit status 1 if one differs",
+                      parsing, here.map_verify, here.building_verify);
+  add_command_of_both(map, "export", "write the octree or the mesh for other programs", parsing,
+                      here.map_export, here.building_export);
+  add_command(
       map, "merge",
       "merge two overlapping maps of one room; B is registered to A by common views and by surfaces,\n"
       "and rejected if the registration is not reliable",
-      work);
-  add_command<MapDiffOptions>(
-      map, "diff", "list what appeared in B and what vanished since A, where both have data, in A's world",
-      work);
+      parsing, here.map_merge);
+  add_command(map, "diff",
+              "list what appeared in B and what vanished since A, where both have data, in A's world",
+              parsing, here.map_diff);
+}
+
+void add_building_commands(CLI::App& app, Parsing& parsing) {
+  add_command(app, "building",
+              "make one map of a building from many recordings, or bring it up to date:\n"
+              "tracks each recording, finds those that show the same places, puts all into one world, and\n"
+              "saves octree and surface in tiles, also as tileset.json with .glb for viewers of 3D Tiles",
+              parsing, parsing.here.building, kBuildingProgram);
+  if (parsing.here.add_building_steps != nullptr) {
+    parsing.here.add_building_steps(app, parsing.work);
+    return;
+  }
+  CLI::App& steps = *app.add_subcommand("building-step", "one job of `roomradar building`");
+  steps.group("");
+  steps.prefix_command();  // its program parses the rest
+  steps.callback(
+      [&parsing] { parsing.work = [line = parsing.line] { return hand_over(kBuildingProgram, line); }; });
 }
 
 /// Adds `help [COMMAND | TOPIC]`.
@@ -123,72 +191,70 @@ void add_help_command(CLI::App& app) {
   });
 }
 
-void add_measuring_commands(CLI::App& app, std::function<int()>& work) {
-  add_command<SimulateOptions>(app, "simulate", "record a simulated Kinect, with ground truth", work)
+void add_measuring_commands(CLI::App& app, Parsing& parsing) {
+  const Commands& here = parsing.here;
+  add_command(app, "simulate", "record a simulated Kinect, with ground truth", parsing, here.simulate)
       ->group(kMeasure);
-  add_command<FallthroughOptions>(
+  add_command(
       app, "fallthrough",
       "how often objects pass through hidden surfaces, per surface policy:\n"
       "drops and pushes objects behind occluders and compares with simulated ground truth. With a SOURCE:\n"
       "drops a ball over each cell of a grid in its map, with the surfaces of one frame",
-      work)
+      parsing, here.fallthrough, "roomradar-fallthrough")
       ->group(kMeasure);
-  add_command<FarmOptions>(
+  add_command(
       app, "farm",
       "run a list of commands as jobs:\n"
       "each job has its own folder, which is complete or absent. A job is skipped if its folder exists\n"
       "for the same program, command and inputs. A failed job is counted, and the others continue",
-      work)
+      parsing, here.farm, "roomradar-farm")
       ->group(kMeasure);
-  add_command<TradeOptions>(
-      app, "trade",
-      "measure what accuracy costs on this machine, setting by setting:\n"
-      "random settings of prescan and run, then greedy combinations of the best single changes, in\n"
-      "simulated rooms with ground truth and in recordings; each setting is measured between two\n"
-      "measurements of the default",
-      work)
+  add_command(app, "trade",
+              "measure what accuracy costs on this machine, setting by setting:\n"
+              "random settings of prescan and run, then greedy combinations of the best single changes, in\n"
+              "simulated rooms with ground truth and in recordings; each setting is measured between two\n"
+              "measurements of the default",
+              parsing, here.trade, "roomradar-trade")
       ->group(kMeasure);
 }
 
-void add_commands(CLI::App& app, std::function<int()>& work, const std::vector<std::string>& line) {
-  add_command<StartOptions>(
-      app, "start",
-      "choose sources and maps in a window, scan and play there; also: roomradar alone,\n"
-      "or roomradar NAME with the name of a map or a recording",
-      work);
-  add_command<PrescanOptions>(app, "prescan", "scan a room and save it as a map", work, &line);
-  add_command<RunOptions>(app, "run", "run augmented reality in a saved map", work);
-  add_map_commands(app, work);
-  add_command<BuildingOptions>(
-      app, "building",
-      "make one map of a building from many recordings, or bring it up to date:\n"
-      "tracks each recording, finds those that show the same places, puts all into one world, and\n"
-      "saves octree and surface in tiles, also as tileset.json with .glb for viewers of 3D Tiles",
-      work);
-  add_building_steps(app, work);
-  add_command<ServeOptions>(
+void add_commands(CLI::App& app, Parsing& parsing) {
+  const Commands& here = parsing.here;
+  add_command(app, "start",
+              "choose sources and maps in a window, scan and play there; also: roomradar alone,\n"
+              "or roomradar NAME with the name of a map or a recording",
+              parsing, here.start);
+  add_command(app, "prescan", "scan a room and save it as a map", parsing, here.prescan);
+  add_command(app, "run", "run augmented reality in a saved map", parsing, here.run);
+  add_map_commands(app, parsing);
+  add_building_commands(app, parsing);
+  add_command(
       app, "serve",
       "serve maps over HTTP until Ctrl-C:\n"
       "GET /maps, /maps/NAME, /maps/NAME/tileset.json and tiles; POST /maps/NAME/locate or /locate with a\n"
       "depth and a colour image answers with the camera's pose; `roomradar help http` has the formats",
-      work);
-  add_command<CheckOptions>(
+      parsing, here.serve, "roomradar-serve");
+  add_command(
       app, "check",
       "examine a recording in a few seconds: kind, times, unit, cameras, poses, and whether its depth\n"
       "agrees with them; exit status 1 if there is something to correct or to state",
-      work);
-  add_command<RecordOptions>(app, "record", "write a source's frames as a recording", work);
-  add_command<CalibrateOptions>(
-      app, "calibrate",
-      "estimate a device's cameras, lenses and depth errors from a recorded checkerboard,\n"
-      "held still in 20 or more places: near, far, tilted, in every part of the image;\n"
-      "`roomradar help calibrate` goes through it step by step",
-      work);
+      parsing, here.check);
+  add_command(app, "record", "write a source's frames as a recording", parsing, here.record);
+  add_command(app, "calibrate",
+              "estimate a device's cameras, lenses and depth errors from a recorded checkerboard,\n"
+              "held still in 20 or more places: near, far, tilted, in every part of the image;\n"
+              "`roomradar help calibrate` goes through it step by step",
+              parsing, here.calibrate, "roomradar-calibrate");
   app.add_subcommand(
          "doctor", "check this set-up and say how to repair it; exit status 1 if something must be repaired")
-      ->callback([&work] { work = run_doctor; });
+      ->callback([&parsing] {
+        if (parsing.here.doctor != nullptr)
+          parsing.work = parsing.here.doctor;
+        else
+          parsing.work = [line = parsing.line] { return hand_over(kRoomradar, line); };
+      });
   add_help_command(app);
-  add_measuring_commands(app, work);
+  add_measuring_commands(app, parsing);
   for (CLI::App* command : commands_of(app))
     if (command->get_group() != kMeasure) command->group("Commands");
 }
@@ -202,17 +268,17 @@ bool begins_with_file(CLI::App& app, int argc, const char* const* argv) {
 
 }  // namespace
 
-ParsedCommand parse_command_line(int argc, const char* const* argv) {
-  if (argc <= 1) return {[] { return run_start_alone(kAlone); }, 0};
-  std::function<int()> work;
+ParsedCommand parse_command_line(int argc, const char* const* argv, const Commands& here) {
+  Parsing parsing{here, {argv, argv + argc}};
+  if (argc <= 1 && here.without_arguments != nullptr)
+    return {[&here] { return here.without_arguments(kAlone); }, 0};
   CLI::App app(
       "roomradar: prescan a room once with a Kinect, then run augmented reality in the saved map.\n"
       "Exit status: 0 done, 1 the work failed (stderr says what and what to do), 2 wrong usage.",
       "roomradar");
   app.set_version_flag("--version", kVersion);
   app.require_subcommand(1);
-  const std::vector<std::string> line(argv, argv + argc);
-  add_commands(app, work, line);
+  add_commands(app, parsing);
   app.add_flag_callback("--manual",
                         [&app] {
                           std::fputs(manual_page(app).c_str(), stdout);
@@ -239,7 +305,29 @@ ParsedCommand parse_command_line(int argc, const char* const* argv) {
     std::fputs(usage_fault(app, error, arguments).c_str(), stderr);
     return {{}, 2};
   }
-  return {work, 0};
+  return {parsing.work, 0};
+}
+
+int run_program(int argc, char** argv, const Commands& here) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit causes a write error instead of a kill
+  try {
+    const ParsedCommand command = parse_command_line(argc, argv, here);
+    const int status = command.work ? command.work() : command.exit_status;
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0 || !std::cout.flush())
+      throw Error("stdout: the output could not be written completely; is the disk full?");
+    return status;
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr,
+                 "roomradar: memory ran out; close other programs, or use coarser cells or smaller images\n");
+    return 1;
+  } catch (const std::filesystem::filesystem_error& error) {
+    std::fprintf(stderr, "roomradar: %s: cannot be used: %s\n", error.path1().c_str(),
+                 system_reason(error.code()).c_str());
+    return 1;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "roomradar: %s\n", error.what());
+    return 1;
+  }
 }
 
 }  // namespace roomradar

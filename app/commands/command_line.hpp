@@ -1,8 +1,50 @@
-// command_line.hpp: parses the command line.
+// command_line.hpp: parses the command line, and executes the command here or with the program that has it.
 #pragma once
 #include <functional>
 
+#include "app/cli/options/map_options.hpp"
+#include "app/cli/options/measuring_options.hpp"
+#include "app/cli/options/prescan_options.hpp"
+#include "app/cli/options/recording_options.hpp"
+#include "app/cli/options/run_options.hpp"
+
+namespace CLI {
+class App;
+}
+
 namespace roomradar {
+
+/// Functions of the commands that this program executes; each returns the exit status. Null: another program
+/// in the same folder executes the command. That is `roomradar` for the first group, and for the others a
+/// program named after the command, such as `roomradar-farm`, since few rooms need it.
+struct Commands {
+  int (*without_arguments)(const char* first_steps) = nullptr;  ///< `roomradar` alone
+  int (*start)(const StartOptions& options) = nullptr;
+  int (*prescan)(const PrescanOptions& options) = nullptr;
+  int (*run)(const RunOptions& options) = nullptr;
+  int (*map_info)(const MapInfoOptions& options) = nullptr;
+  int (*map_verify)(const MapVerifyOptions& options) = nullptr;
+  int (*map_export)(const MapExportOptions& options) = nullptr;
+  int (*map_merge)(const MapMergeOptions& options) = nullptr;
+  int (*map_diff)(const MapDiffOptions& options) = nullptr;
+  int (*check)(const CheckOptions& options) = nullptr;
+  int (*record)(const RecordOptions& options) = nullptr;
+  int (*doctor)() = nullptr;
+  int (*simulate)(const SimulateOptions& options) = nullptr;
+
+  // roomradar-building, also for `map` of a building.
+  int (*building)(const BuildingOptions& options) = nullptr;
+  void (*add_building_steps)(CLI::App& app, std::function<int()>& work) = nullptr;
+  int (*building_info)(const MapInfoOptions& options) = nullptr;
+  int (*building_verify)(const MapVerifyOptions& options) = nullptr;
+  int (*building_export)(const MapExportOptions& options) = nullptr;
+
+  int (*calibrate)(const CalibrateOptions& options) = nullptr;
+  int (*fallthrough)(const FallthroughOptions& options) = nullptr;
+  int (*farm)(const FarmOptions& options) = nullptr;
+  int (*serve)(const ServeOptions& options) = nullptr;
+  int (*trade)(const TradeOptions& options) = nullptr;
+};
 
 struct ParsedCommand {
   std::function<int()> work;  ///< the command; empty: help or a usage message was printed
@@ -11,6 +53,11 @@ struct ParsedCommand {
 
 /// Parses the arguments. Prints help or a usage message if needed. Throws Error if a presets file or a
 /// recorded session named in the arguments cannot be read.
-ParsedCommand parse_command_line(int argc, const char* const* argv);
+/// @param here  must outlive the result's `work`
+ParsedCommand parse_command_line(int argc, const char* const* argv, const Commands& here);
+
+/// main() of a program with these commands: executes the command line and reports errors. Returns the exit
+/// status.
+int run_program(int argc, char** argv, const Commands& here);
 
 }  // namespace roomradar

@@ -1,33 +1,14 @@
 // commands.hpp: the commands of roomradar: one function per command, which executes it with its options.
 #pragma once
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "app/cli/options/map_options.hpp"
 #include "app/cli/options/measuring_options.hpp"
 #include "app/cli/options/prescan_options.hpp"
 #include "app/cli/options/recording_options.hpp"
 #include "app/cli/options/run_options.hpp"
 
-namespace CLI {
-class App;
-}
-
 namespace roomradar {
 
 // roomradar start, or roomradar without arguments: offers maps and actions in a window.
-
-struct StartOptions {
-  /// Maps, recordings or other sources that are listed first; the last one is chosen.
-  std::vector<std::string> names;
-  /// Scale of the window's text and panes; unset: the remembered one, or the monitor's.
-  std::optional<double> ui_scale;
-};
-
-/// Adds the options with their help texts and checks.
-/// @param options  receives the values; must outlive the parsing
-void add_options(CLI::App& command, StartOptions& options);
 
 /// Shows the start view, performs the chosen action in the same window, and shows the view again, until the
 /// user closes the window. The view shows the error messages of failed actions. Returns the exit status: that

@@ -185,8 +185,10 @@ void publish(const FallthroughOptions& options, const std::vector<ScenarioRow>& 
 
 /// Lets jobs run the scenarios, and publishes their results. Returns the exit status: 1 if a job failed.
 int run_jobs(const FallthroughOptions& options, Report& report) {
-  const JobFaults failed = report.times.timed(
-      "jobs", [&] { return run_split(options.jobs, scenario_manifest(options), {}, options.processes); });
+  const JobFaults failed = report.times.timed("jobs", [&] {
+    return run_split(options.jobs, scenario_manifest(options), "roomradar-fallthrough", {},
+                     options.processes);
+  });
   const std::vector<ScenarioRow> rows = joined_rows(options, failed);
   if (rows.empty()) throw Error(options.jobs + ": no job has results; the messages above say why");
   RoomScan scan;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/cli/interrupt.hpp"
+#include "app/cli/program_beside.hpp"
 #include "app/cli/progress.hpp"
 #include "app/cli/report.hpp"
 #include "app/commands/commands.hpp"
@@ -20,8 +21,6 @@
 
 namespace roomradar {
 namespace {
-
-std::filesystem::path this_program() { return std::filesystem::read_symlink("/proc/self/exe"); }
 
 std::string_view to_string(JobState state) {
   switch (state) {
@@ -114,12 +113,14 @@ FarmState run_planned(const FarmOptions& options, const FarmPlan& plan, const Ru
 namespace {
 
 /// Runs a plan on this machine, until it is done or Ctrl-C is pressed, which throws Error.
-FarmState run_here(const FarmOptions& options, const FarmPlan& plan) {
+/// @param program_name  name of the program that does the jobs
+FarmState run_here(const FarmOptions& options, const FarmPlan& plan, const std::string& program_name) {
+  const std::filesystem::path program = program_beside(program_name);
   const int processes = given_or_processors(options.processes);
   const Interrupt interrupt;
   Interrupt::say("roomradar: stopping the running jobs; the same command continues them later\n");
   FarmState state = run_planned(options, plan, [&](const WatchFarm& watch) {
-    return run_farm(plan, processes, "/proc/self/exe", Interrupt::was_pressed, watch);
+    return run_farm(plan, processes, program, Interrupt::was_pressed, watch);
   });
   if (Interrupt::was_pressed())
     throw Error(options.out + ": stopped by Ctrl-C; run the same command again to finish the rest");
@@ -137,13 +138,13 @@ int run(const FarmOptions& options) {
   require_writable(options.report);
   const FarmPlan plan = plan_of(options);
   if (options.emit) {
-    std::fputs(batch_script(plan, *options.emit, this_program()).c_str(), stdout);
+    std::fputs(batch_script(plan, *options.emit, program_beside("roomradar")).c_str(), stdout);
     return 0;
   }
-  return exit_status(run_here(options, plan));
+  return exit_status(run_here(options, plan, "roomradar"));
 }
 
-JobFaults run_split(const std::string& folder, const std::string& manifest,
+JobFaults run_split(const std::string& folder, const std::string& manifest, const std::string& program,
                     const std::vector<std::string>& jobs, int processes) {
   FarmOptions options;
   options.manifest = (std::filesystem::path(folder) / "jobs.txt").string();
@@ -154,7 +155,7 @@ JobFaults run_split(const std::string& folder, const std::string& manifest,
   make_folder(folder);
   write_bytes(options.manifest, manifest);
   const FarmPlan plan = plan_of(options);
-  const FarmState state = run_here(options, plan);
+  const FarmState state = run_here(options, plan, program);
   JobFaults faults;
   for (std::size_t i = 0; i < plan.jobs.size(); ++i)
     if (std::string fault = fault_of(plan, state, i); !fault.empty())

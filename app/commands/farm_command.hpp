@@ -25,10 +25,11 @@ using JobFaults = std::map<std::string, std::string>;
 /// Runs the jobs into which a command splits its work, on this machine. Skips jobs that already have results.
 /// @param folder     folder for the results, and for the manifest (jobs.txt); created if missing
 /// @param manifest   text; see read_manifest()
+/// @param program    name of the program that does the jobs, such as roomradar-trade
 /// @param jobs       names of the jobs to run, with the jobs that they need; empty: all
 /// @param processes  number of concurrent jobs; 0: one per processor
 /// @throws Error if the folder cannot be written or Ctrl-C is pressed
-JobFaults run_split(const std::string& folder, const std::string& manifest,
+JobFaults run_split(const std::string& folder, const std::string& manifest, const std::string& program,
                     const std::vector<std::string>& jobs, int processes);
 
 }  // namespace roomradar

@@ -3,11 +3,9 @@
 
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
 
-#include "app/cli/options/shared_options.hpp"
 #include "app/cli/shell_line.hpp"
 #include "app/commands/command_line.hpp"
 #include "app/start/start_state.hpp"
@@ -29,7 +27,8 @@ int run_as_typed(const std::vector<std::string>& words) {
   std::vector<const char*> arguments = {"roomradar"};
   for (const std::string& word : words) arguments.push_back(word.c_str());
   std::fprintf(stderr, "roomradar %s\n", shell_line(words).c_str());
-  const ParsedCommand command = parse_command_line(static_cast<int>(arguments.size()), arguments.data());
+  const ParsedCommand command =
+      parse_command_line(static_cast<int>(arguments.size()), arguments.data(), {.prescan = run, .run = run});
   return command.work ? command.work() : command.exit_status;
 }
 
@@ -101,13 +100,6 @@ bool has_display() {
 }
 
 }  // namespace
-
-void add_options(CLI::App& command, StartOptions& options) {
-  command.add_option(
-      "NAME", options.names,
-      "saved map, recording or other source to choose in the window; may be repeated (default: none)");
-  add_ui_scale_option(command, options.ui_scale);
-}
 
 int run(const StartOptions& options) {
   StartWindow window;

@@ -162,8 +162,8 @@ class SweepByJobs {
                        const SweepWatch& watch) {
     manifest_ +=
         sweep_manifest(work, settings, [&](std::size_t scene) { return job_words(options_, scene); });
-    JobFaults failed =
-        run_split(options_.jobs, manifest_, sweep_job_names(work, settings), options_.processes);
+    JobFaults failed = run_split(options_.jobs, manifest_, "roomradar-trade", sweep_job_names(work, settings),
+                                 options_.processes);
     SweptRows swept{joined_sweep_rows(work, settings, options_.repeats, options_.jobs, failed), {}};
     for (const SweepRow& row : swept.rows) watch.on_row(row);
     failed_.merge(std::move(failed));

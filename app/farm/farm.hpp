@@ -65,7 +65,7 @@ using IsCancelled = std::function<bool()>;
 /// Runs a job in its folder, and waits for its end. The job's output goes to NAME.log. The process is killed
 /// when the calling thread ends or `is_cancelled` returns true. Does not throw: a job that cannot be run
 /// counts as failed.
-/// @param program  path of the program, such as /proc/self/exe
+/// @param program  path of the executable that the job runs
 JobResult run_job(const FarmPlan& plan, std::size_t job, const std::filesystem::path& program,
                   const IsCancelled& is_cancelled);
 
@@ -85,7 +85,7 @@ using WatchFarm = std::function<void(const FarmState& state, std::size_t job)>;
 /// Runs the jobs without results, each in its own process. If a job fails, only the jobs that need it are
 /// skipped.
 /// @param processes     max number of jobs at a time, >= 1
-/// @param program       file of the program that the jobs run
+/// @param program       path of the executable that the jobs run
 /// @param is_cancelled  once it returns true, running jobs are killed and no more jobs begin
 FarmState run_farm(const FarmPlan& plan, int processes, const std::filesystem::path& program,
                    const IsCancelled& is_cancelled, const WatchFarm& watch = {});

@@ -13,7 +13,8 @@ function(install_licence package component)
 endfunction()
 
 # The program.
-install(TARGETS roomradar COMPONENT program)
+get_property(programs GLOBAL PROPERTY roomradar_programs)
+install(TARGETS roomradar ${programs} COMPONENT program)
 install(TARGETS roomradar_video LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/roomradar COMPONENT program)
 install(FILES ${PROJECT_BINARY_DIR}/roomradar.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
 install(FILES ${PROJECT_BINARY_DIR}/roomradar.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions

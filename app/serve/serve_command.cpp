@@ -3,7 +3,6 @@
 
 #include <malloc.h>
 
-#include <CLI/CLI.hpp>
 #include <atomic>
 #include <chrono>
 #include <cstdio>
@@ -58,28 +57,6 @@ MapServerConfig config_of(const ServeOptions& options) {
 }
 
 }  // namespace
-
-void add_options(CLI::App& command, ServeOptions& options) {
-  command.add_option("MAP", options.maps, "folders of buildings and of rooms' maps (required)")->required();
-  command
-      .add_option("--listen", options.listen,
-                  "address and port; port 0 takes a free one and prints it (default: 127.0.0.1:8080)")
-      ->type_name("ADDRESS:PORT");
-  command.add_flag("--allow-remote", options.allow_remote,
-                   "allow an address that other machines reach; needs --token-file. The connection is not\n"
-                   "encrypted: put a proxy with TLS in front of it (default: off)");
-  command
-      .add_option("--token-file", options.token_file,
-                  "file with the token that each request must have (default: no token)")
-      ->type_name("FILE");
-  command
-      .add_option(
-          "--anchor", options.anchor,
-          "place of the map's origin on the earth, for answers as GeoPose: degrees, degrees, m above the\n"
-          "ellipsoid, and the direction of +y in degrees clockwise from north (default: none)")
-      ->type_name("LAT,LON,HEIGHT,HEADING");
-  command.add_flag("--verbose", options.verbose, "print a line per request to stderr (default: off)");
-}
 
 int run(const ServeOptions& options) {
   // Threads are there for requests. Many arenas would keep memory of past ones.

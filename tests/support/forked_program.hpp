@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-int roomradar_main(int argc, char** argv);  // main() of app/main.cpp, in the library program_main
+int roomradar_main(int argc, char** argv);  // in the library program_main
 
 namespace roomradar::test {
 

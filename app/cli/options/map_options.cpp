@@ -67,4 +67,58 @@ void add_options(CLI::App& command, MapDiffOptions& options) {
       ->type_name("FILE.html");
 }
 
+void add_options(CLI::App& command, BuildingOptions& options) {
+  command
+      .add_option("DIR", options.folder, "folder of the building; is made, or brought up to date (required)")
+      ->required();
+  command
+      .add_option("--recordings", options.recordings,
+                  "list of the recordings, one per line: NAME: SOURCE (required)")
+      ->required()
+      ->type_name("LIST");
+  command
+      .add_option("--resolution", options.grid.resolution_m,
+                  with_default("edge of the smallest voxels, m", options.grid.resolution_m))
+      ->check(within(0.001, 1.0, "metres"))
+      ->type_name("M");
+  command
+      .add_option(
+          "--tile-edge", options.grid.edge_voxels,
+          with_default("edge of a tile in voxels, a power of two from 64 to 4096", options.grid.edge_voxels))
+      ->type_name("N");
+  command
+      .add_option("--deviation", options.deviation_m,
+                  with_default("how far simplification may move the surface, m", options.deviation_m))
+      ->check(within(0.0, 0.1, "metres"))
+      ->type_name("M");
+  add_poses_option(
+      command, options.poses,
+      "estimate the camera poses, with those of the recordings as a prior (auto) or without them\n"
+      "(tracked), or use those of the recordings, which must be in one world (recorded)");
+  add_processes_option(command, options.processes);
+  add_report_option(command, options.report);
+}
+
+void add_options(CLI::App& command, ServeOptions& options) {
+  command.add_option("MAP", options.maps, "folders of buildings and of rooms' maps (required)")->required();
+  command
+      .add_option("--listen", options.listen,
+                  "address and port; port 0 takes a free one and prints it (default: 127.0.0.1:8080)")
+      ->type_name("ADDRESS:PORT");
+  command.add_flag("--allow-remote", options.allow_remote,
+                   "allow an address that other machines reach; needs --token-file. The connection is not\n"
+                   "encrypted: put a proxy with TLS in front of it (default: off)");
+  command
+      .add_option("--token-file", options.token_file,
+                  "file with the token that each request must have (default: no token)")
+      ->type_name("FILE");
+  command
+      .add_option(
+          "--anchor", options.anchor,
+          "place of the map's origin on the earth, for answers as GeoPose: degrees, degrees, m above the\n"
+          "ellipsoid, and the direction of +y in degrees clockwise from north (default: none)")
+      ->type_name("LAT,LON,HEIGHT,HEADING");
+  command.add_flag("--verbose", options.verbose, "print a line per request to stderr (default: off)");
+}
+
 }  // namespace roomradar

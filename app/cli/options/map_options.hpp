@@ -1,7 +1,11 @@
-// map_options.hpp: options of `roomradar map info|verify|export|merge|diff`.
+// map_options.hpp: options of `roomradar map info|verify|export|merge|diff`, `building` and `serve`.
 #pragma once
 #include <optional>
 #include <string>
+#include <vector>
+
+#include "mapping/building/tile_grid.hpp"
+#include "mapping/types/pose_origin.hpp"
 
 namespace CLI {
 class App;
@@ -56,6 +60,37 @@ struct MapDiffOptions {
   std::string html;
 };
 
+struct BuildingOptions {
+  /// Folder of the building; created or updated.
+  std::string folder;
+  /// File with the list of recordings; see read_recording_list().
+  std::string recordings;
+  TileGrid grid;
+  /// Max deviation of the surface's simplification.
+  double deviation_m = 0.002;
+  /// Origin of the camera poses.
+  PoseOrigin poses = PoseOrigin::kAuto;
+  /// Max number of concurrent jobs; 0: one per processor.
+  int processes = 0;
+  /// JSON file to write; empty: not written.
+  std::string report;
+};
+
+struct ServeOptions {
+  /// Map folders to serve.
+  std::vector<std::string> maps;
+  /// Address and port; see parse_listen_address().
+  std::string listen = "127.0.0.1:8080";
+  /// True: accepts an address that other machines reach.
+  bool allow_remote = false;
+  /// File with the token that each request must have; empty: no token.
+  std::string token_file;
+  /// Place of the map's origin on the earth; see parse_geo_anchor(). Empty: none.
+  std::string anchor;
+  /// True: prints a line per request.
+  bool verbose = false;
+};
+
 /// Adds the options of `map info` with their help texts and checks. For this function and those below,
 /// `options` must outlive the parsing.
 void add_options(CLI::App& command, MapInfoOptions& options);
@@ -67,5 +102,9 @@ void add_options(CLI::App& command, MapExportOptions& options);
 void add_options(CLI::App& command, MapMergeOptions& options);
 /// Adds the options of `map diff`.
 void add_options(CLI::App& command, MapDiffOptions& options);
+/// Adds the options of `building`.
+void add_options(CLI::App& command, BuildingOptions& options);
+/// Adds the options of `serve`.
+void add_options(CLI::App& command, ServeOptions& options);
 
 }  // namespace roomradar

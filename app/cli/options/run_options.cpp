@@ -197,4 +197,11 @@ void complete_options(const CLI::App& command, RunOptions& options,
         "--unknown solid: needs --surfaces map, because only the map knows which space was observed");
 }
 
+void add_options(CLI::App& command, StartOptions& options) {
+  command.add_option(
+      "NAME", options.names,
+      "saved map, recording or other source to choose in the window; may be repeated (default: none)");
+  add_ui_scale_option(command, options.ui_scale);
+}
+
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// run_options.hpp: options of `roomradar run`.
+// run_options.hpp: options of `roomradar run` and of `start`, the window from which it begins.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -97,5 +97,16 @@ using ReadRecordedOptions = std::function<std::optional<RunOptions>(const std::s
 /// session, options that are not on the command line are taken from the session. Throws CLI::ParseError for
 /// wrong usage, and Error if the preset or the session cannot be read.
 void complete_options(const CLI::App& command, RunOptions& options, const ReadRecordedOptions& read_recorded);
+
+struct StartOptions {
+  /// Maps, recordings or other sources that are listed first; the last one is chosen.
+  std::vector<std::string> names;
+  /// Scale of the window's text and panes; unset: the remembered one, or the monitor's.
+  std::optional<double> ui_scale;
+};
+
+/// Adds the options with their help texts and checks.
+/// @param options  receives the values; must outlive the parsing
+void add_options(CLI::App& command, StartOptions& options);
 
 }  // namespace roomradar

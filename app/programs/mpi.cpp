@@ -1,39 +1,32 @@
-// mpi_main.cpp: roomradar-mpi: runs the jobs of `roomradar farm` and `roomradar building` on all ranks of an
+// mpi.cpp: roomradar-mpi: runs the jobs of `roomradar farm` and `roomradar building` on all ranks of an
 // MPI program.
 #include <mpi.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
-#include <filesystem>
 #include <optional>
 
 #include "app/building/building_command.hpp"
+#include "app/cli/program_beside.hpp"
 #include "app/commands/farm_command.hpp"
 #include "app/farm/mpi_farm.hpp"
-#include "mapping/types/system/error.hpp"
 #include "mapping/types/system/version.hpp"
 
 namespace {
 
 using namespace roomradar;
 
-/// Returns the path of `roomradar`, which is in the folder of this program.
-std::filesystem::path roomradar_program() {
-  const auto program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "roomradar";
-  if (access(program.c_str(), X_OK) != 0)
-    throw Error(program.string() +
-                ": is missing; roomradar-mpi must be beside roomradar, which does the jobs");
-  return program;
-}
+/// Programs that do the jobs.
+constexpr const char* kFarmJobs = "roomradar";
+constexpr const char* kBuildingJobs = "roomradar-building";
 
 /// Executes `farm` on this rank. Returns the exit status.
 int run_on_rank(const FarmOptions& options, int rank) {
   std::optional<FarmPlan> plan;
   std::exception_ptr fault;
   if (rank == 0) try {
-      (void)roomradar_program();
+      (void)program_beside(kFarmJobs);
       plan = plan_of(options);
     } catch (const std::exception&) {
       fault = std::current_exception();
@@ -42,7 +35,7 @@ int run_on_rank(const FarmOptions& options, int rank) {
   if (fault) std::rethrow_exception(fault);
   if (!plan) return 0;  // rank 0 says why
   const auto run_jobs = [&](const WatchFarm& watch) {
-    return run_farm_on_ranks(*plan, roomradar_program(), watch);
+    return run_farm_on_ranks(*plan, program_beside(kFarmJobs), watch);
   };
   if (rank == 0) return exit_status(run_planned(options, *plan, run_jobs));
   (void)run_jobs({});
@@ -53,15 +46,15 @@ int run_on_rank(const FarmOptions& options, int rank) {
 int run_on_rank(const BuildingOptions& options, int rank) {
   if (rank != 0) {
     while (const std::optional<FarmPlan> plan = share_plan(nullptr))
-      (void)run_farm_on_ranks(*plan, roomradar_program());
+      (void)run_farm_on_ranks(*plan, program_beside(kBuildingJobs));
     return 0;
   }
   int status = 1;
   std::exception_ptr fault;
   try {
-    (void)roomradar_program();
+    (void)program_beside(kBuildingJobs);
     status = run_building(options, [](const std::string& /*stage*/, const FarmPlan& plan) {
-      return run_farm_on_ranks(*share_plan(&plan), roomradar_program());
+      return run_farm_on_ranks(*share_plan(&plan), program_beside(kBuildingJobs));
     });
   } catch (const std::exception&) {
     fault = std::current_exception();

@@ -1,0 +1,8 @@
+// farm.cpp: roomradar-farm: `roomradar farm`.
+#include "app/commands/command_line.hpp"
+#include "app/commands/commands.hpp"
+
+int main(int argc, char** argv) {
+  using namespace roomradar;
+  return run_program(argc, argv, {.farm = run});
+}

@@ -1,0 +1,8 @@
+// trade.cpp: roomradar-trade: `roomradar trade`.
+#include "app/commands/command_line.hpp"
+#include "app/commands/commands.hpp"
+
+int main(int argc, char** argv) {
+  using namespace roomradar;
+  return run_program(argc, argv, {.trade = run});
+}
