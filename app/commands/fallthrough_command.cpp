@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <future>
 #include <memory>
+#include <vector>
 
 #include "app/cli/deferred_errors.hpp"
 #include "app/cli/progress.hpp"

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <numeric>
 #include <utility>
+#include <vector>
 
 #include "mapping/types/depth_noise.hpp"
 #include "mapping/types/fibonacci_hash.hpp"

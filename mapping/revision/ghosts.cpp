@@ -11,6 +11,7 @@
 #include <span>
 #include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include "mapping/revision/ghost_zone.hpp"
 #include "mapping/types/depth_noise.hpp"

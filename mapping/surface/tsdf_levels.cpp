@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <unordered_set>
 #include <utility>
+#include <vector>
 
 #include "mapping/types/system/parallel_for.hpp"
 #include "mapping/types/voxel_key.hpp"

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 #include "mapping/types/linear_algebra.hpp"
 #include "mapping/types/system/counter_random.hpp"

@@ -1,11 +1,9 @@
-// parallel_for.hpp: distributes independent work items over threads.
+// parallel_for.hpp: distributes independent work items over the process' pool of threads.
 #pragma once
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
-#include <future>
+#include <functional>
 #include <thread>
-#include <vector>
 
 namespace roomradar {
 
@@ -21,21 +19,13 @@ inline int given_or_processors(int given) {
   return given > 0 ? given : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-/// Calls work(piece, thread) for each piece in 0..pieces-1, on up to `threads` threads. The number of a
-/// thread is below `threads`; 0 is the caller's. Idle threads take the next piece, so results must not depend
-/// on the order of the pieces. Waits for all threads, and rethrows an exception of `work`.
-template <typename Work>
-void parallel_for(std::size_t pieces, unsigned threads, const Work& work) {
-  std::atomic<std::size_t> next = 0;
-  const auto run = [&](unsigned thread) {
-    for (std::size_t piece = next++; piece < pieces; piece = next++) work(piece, thread);
-  };
-  std::vector<std::future<void>> others;
-  for (unsigned thread = 1; thread < threads && thread < pieces; ++thread)
-    others.push_back(std::async(std::launch::async, run, thread));
-  run(0);
-  for (std::future<void>& other : others) other.get();
-}
+/// Calls work(piece, thread) for each piece in 0..pieces-1, on the caller and up to `threads` - 1 threads of
+/// TBB's pool, which OpenCV uses, too. Two calls at a time never have the same `thread`, a number below
+/// `threads`. Idle threads take the next piece, so results must not depend on the order of the pieces. Waits
+/// for all threads, and rethrows an exception of `work`. While it waits, the caller executes no work of other
+/// calls: it may hold a lock.
+void parallel_for(std::size_t pieces, unsigned threads,
+                  const std::function<void(std::size_t piece, unsigned thread)>& work);
 
 /// Calls work(begin, end) for consecutive ranges of 0..count-1, each of at most `most` (> 0) numbers, on all
 /// processors.

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <stdexcept>
+#include <vector>
 
 namespace roomradar::parallel_for_test {
 namespace {
