@@ -11,12 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "app/building/building_map_commands.hpp"
 #include "app/cli/report.hpp"
 #include "app/cli/shell_line.hpp"
 #include "app/page/room_page.hpp"
 #include "app/sources/recordings/recording_kinds.hpp"
-#include "mapping/building/building_info.hpp"
 #include "mapping/map/level_surfaces.hpp"
 #include "mapping/map/map_export.hpp"
 #include "mapping/map/map_folder.hpp"
@@ -82,7 +80,6 @@ void export_page(const MapExportOptions& options) {
 }  // namespace
 
 int run(const MapInfoOptions& options) {
-  if (is_building(options.map)) return run_on_building(options);
   require_no_recording(options.map);
   const MapInfo info = load_map_info(options.map);
   const Mesh mesh = load_map_mesh(options.map);
@@ -95,7 +92,6 @@ int run(const MapInfoOptions& options) {
 }
 
 int run(const MapVerifyOptions& options) {
-  if (is_building(options.map)) return run_on_building(options);
   require_no_recording(options.map);
   const std::vector<std::string> faults = verify_map(options.map);
   for (const std::string& fault : faults) std::fprintf(stderr, "roomradar: %s\n", fault.c_str());
@@ -105,7 +101,6 @@ int run(const MapVerifyOptions& options) {
 }
 
 int run(const MapExportOptions& options) {
-  if (is_building(options.map)) return run_on_building(options);
   require_no_recording(options.map);
   if (is_page(options.path)) {
     if (options.unknown)
