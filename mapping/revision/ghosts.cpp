@@ -513,36 +513,43 @@ std::vector<VotedVoxel> GhostVotes::those(const AreSuch& are_such) const {
   return found;
 }
 
-std::vector<GhostVotes::Fate> GhostVotes::fates() const {
-  std::vector<Fate> fates(votes_.size(), Fate::kStill);
-  const auto voxels_of = [this](double edge_m) {
-    return 2.0 * edge_m * edge_m / (resolution_m_ * resolution_m_);
-  };
-  const double min_voxels = voxels_of(static_cast<double>(config_.min_extent_m));
+double GhostVotes::voxels_of(double edge_m) const {
+  return 2.0 * edge_m * edge_m / (resolution_m_ * resolution_m_);
+}
 
-  // Voxels with enough evidence, in groups that are large enough.
-  const auto may_be_gone = those(
-      [](const Votes& votes, const AbsenceVotes& absence) { return may_be_absent(absence, votes.seen); });
+GhostVotes::ThroughGroups GhostVotes::groups_seen_through() const {
   const auto seen_through = those([this](const Votes& votes, const AbsenceVotes&) {
     return votes.through >= config_.min_through && is_share(votes.through, votes.seen);
   });
-  const std::vector<VotedVoxel> absent = find_absent(may_be_gone, absence_, min_voxels);
-  std::vector<VotedVoxel> ghosts, sure;
   const auto mostly_through = those([this](const Votes& votes, const AbsenceVotes&) {
     return votes.far_through >= config_.min_through && votes.far_through > votes.seen;
   });
+  const double min_voxels = voxels_of(static_cast<double>(config_.min_extent_m));
   const double min_mostly_through = voxels_of(static_cast<double>(config_.min_extent_mostly_through_m));
   const std::vector<std::size_t> together = voxels_together(seen_through),
                                  mostly_together = voxels_together(mostly_through);
+  ThroughGroups groups;
   for (std::size_t i = 0, k = 0; i < seen_through.size(); ++i) {
     const auto size = static_cast<double>(together[i]);
     // Both lists are in one order, and the second is a part of the first.
     const bool is_mostly = k < mostly_through.size() && mostly_through[k].voxel == seen_through[i].voxel;
     const double mostly_size = is_mostly ? static_cast<double>(mostly_together[k++]) : 0.0;
     if (size >= min_voxels || (is_mostly && mostly_size >= min_mostly_through))
-      ghosts.push_back(seen_through[i]);
-    if (size >= voxels_of(kSureExtent_m)) sure.push_back(seen_through[i]);
+      groups.ghosts.push_back(seen_through[i]);
+    if (size >= voxels_of(kSureExtent_m)) groups.sure.push_back(seen_through[i]);
   }
+  return groups;
+}
+
+std::vector<GhostVotes::Fate> GhostVotes::fates() const {
+  std::vector<Fate> fates(votes_.size(), Fate::kStill);
+
+  // Voxels with enough evidence, in groups that are large enough.
+  const auto may_be_gone = those(
+      [](const Votes& votes, const AbsenceVotes& absence) { return may_be_absent(absence, votes.seen); });
+  const std::vector<VotedVoxel> absent =
+      find_absent(may_be_gone, absence_, voxels_of(static_cast<double>(config_.min_extent_m)));
+  auto [ghosts, sure] = groups_seen_through();
 
   // Voxels connected to those groups need less evidence.
   std::vector<VotedVoxel> moved_on;

@@ -191,6 +191,13 @@ class GhostVotes {
  private:
   enum class Fate : std::uint8_t { kStill, kGhost, kAbsent };
   [[nodiscard]] std::vector<Fate> fates() const;  // in the order of votes_
+  /// Voxels that rays went through, in groups that are large enough to be a ghost, or for sure one.
+  struct ThroughGroups {
+    std::vector<VotedVoxel> ghosts, sure;
+  };
+  [[nodiscard]] ThroughGroups groups_seen_through() const;
+  /// Returns the voxels on both sides of a square surface of that edge.
+  [[nodiscard]] double voxels_of(double edge_m) const;
   struct Votes {
     std::uint16_t offset : 9 = 0;  // of the lowest voxel in the brick
     std::uint16_t coarse : 1 = 0;
