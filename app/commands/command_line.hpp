@@ -1,4 +1,4 @@
-// command_line.hpp: parses the command line, and executes the command here or with the program that has it.
+// command_line.hpp: parses the command line. A command is executed by the program that implements it.
 #pragma once
 #include <functional>
 
@@ -14,11 +14,11 @@ class App;
 
 namespace roomradar {
 
-/// Functions of the commands that this program executes; each returns the exit status. Null: another program
-/// in the same folder executes the command. That is `roomradar` for the first group, and for the others a
-/// program named after the command, such as `roomradar-farm`, since few rooms need it.
+/// Functions of the commands that a program implements. Each returns the exit status. A command whose
+/// function is null is executed by the program that implements it, in the same folder.
 struct Commands {
-  int (*without_arguments)(const char* first_steps) = nullptr;  ///< `roomradar` alone
+  // Implemented by `roomradar`.
+  int (*without_arguments)(const char* first_steps) = nullptr;  ///< without a command; null: wrong usage
   int (*start)(const StartOptions& options) = nullptr;
   int (*prescan)(const PrescanOptions& options) = nullptr;
   int (*run)(const RunOptions& options) = nullptr;
@@ -32,13 +32,15 @@ struct Commands {
   int (*doctor)() = nullptr;
   int (*simulate)(const SimulateOptions& options) = nullptr;
 
-  // roomradar-building, also for `map` of a building.
+  // Implemented by `roomradar-building`, also for `map` of a building.
   int (*building)(const BuildingOptions& options) = nullptr;
+  /// Adds the hidden command `building-step`; see app/building/building_command.hpp.
   void (*add_building_steps)(CLI::App& app, std::function<int()>& work) = nullptr;
   int (*building_info)(const MapInfoOptions& options) = nullptr;
   int (*building_verify)(const MapVerifyOptions& options) = nullptr;
   int (*building_export)(const MapExportOptions& options) = nullptr;
 
+  // Implemented by a program named after the command, such as `roomradar-farm`.
   int (*calibrate)(const CalibrateOptions& options) = nullptr;
   int (*fallthrough)(const FallthroughOptions& options) = nullptr;
   int (*farm)(const FarmOptions& options) = nullptr;

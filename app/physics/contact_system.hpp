@@ -16,7 +16,7 @@
 
 namespace roomradar {
 
-/// Valid as long as neither the sleeping body nor a body that it touches has moved.
+/// Contacts of a sleeping body, valid while neither that body nor a body that it touches has moved.
 struct SleeperContacts {
   struct ContactBody {
     const Body* body;  ///< null: static surface
@@ -35,8 +35,8 @@ inline const Body* body_of(std::span<const SceneBody> others, const ClosestPoint
   return p.tree < others.size() ? others[p.tree].body : nullptr;
 }
 
-/// Copies a body's known contacts to `near` if they are still valid. Returns false if they are not.
-/// ClosestPoint::tree is set to the other body's index in `others`, which may have changed.
+/// Copies a body's known contacts to `near` if they are still valid. Otherwise returns false, and `near` may
+/// be overwritten. ClosestPoint::tree is set to the other body's index in `others`, which may have changed.
 /// @param others  as in body_of()
 bool recall_contacts(std::span<const SleeperContacts> known, const Body& body,
                      std::span<const SceneBody> others, std::vector<ClosestPoint>& near);
@@ -60,16 +60,17 @@ struct PastContact {
   Eigen::Vector3d friction_impulse_Ns = Eigen::Vector3d::Zero();
 };
 
-/// Normal of a contact's closest features, and their point on the body, from its centre of mass.
+/// Closest features of a contact: their normal, and their point on the body relative to its centre of mass.
 struct Feature {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ(), offset_m = Eigen::Vector3d::Zero();
   bool is_on_patch = false;  ///< the contact has patch_normal instead
   Eigen::Vector3d patch_normal = Eigen::Vector3d::UnitZ();
 };
 
-/// Contacts of a substep's bodies. The solver's bodies are first the substep's bodies, then the bystanders.
+/// Contacts of a substep's bodies. `bodies` holds the substep's bodies, then the bystanders.
 struct ContactSystem {
-  /// Their normals, and the points where impulses act, are those of the surface's patch; see patch_contact().
+  /// The contacts' normals, and the points where impulses act, are those of the surface's patch; see
+  /// patch_contact().
   std::vector<SolverContact> contacts;
   std::vector<Feature> features;   ///< per contact: the closest features
   std::vector<double> gap_m;       ///< per contact; 0 for a Push
@@ -87,13 +88,14 @@ struct ContactSystem {
   std::vector<std::size_t> upwards;  ///< scratch: indices of bodies by height
 };
 
-/// Returns the worker for the queries of this number of bodies; null if one thread is as fast.
+/// Returns the worker for the queries of this number of bodies; null if one thread is as fast, or with
+/// is_one_thread.
 WorkerThread* worker_for(std::size_t queried_bodies, ContactSystem& system);
 
 /// Finds the contacts within 1.5 contact margins of all active bodies. Adds those of sleeping bodies in the
 /// same connected component. Leaves out sleeping bodies that rest on a dynamic surface or that a surface
-/// intersects. Sets `crosses` of active bodies that a surface intersects. Orders contacts by body height, the
-/// lowest first, and active bodies before sleeping ones.
+/// intersects. Sets `crosses` of active bodies that a surface intersects. The contacts of active bodies come
+/// first, then those of sleeping ones; within each, those of the lowest body first.
 /// @param up_world  unit, against gravity; zero without gravity
 void find_contacts(std::span<MovingBody> bodies, const PhysicsConfig& config, const Eigen::Vector3d& up_world,
                    ContactSystem& system);
@@ -120,7 +122,7 @@ void clear_impulses(ContactSystem& system);
 /// Warm start: sets the contacts' impulses to those of the same contacts in system.past, times `scale`.
 /// Contacts without a match get 0.
 void guess_impulses(std::span<const MovingBody> bodies, double scale, ContactSystem& system);
-/// Stores the contacts' impulses, times `scale`, in system.past.
+/// Stores the contacts' positive impulses, times `scale`, in system.past, except those with bystanders.
 void keep_impulses(std::span<const MovingBody> bodies, double scale, ContactSystem& system);
 
 }  // namespace roomradar

@@ -32,13 +32,13 @@ struct OpenedRun {
   bool is_replay = false;
   /// Records events and frames; set with --record-session.
   std::optional<SessionRecorder> recorder;
-  /// Last frame to process; unset if the run ends with the source or with a quit event.
+  /// Last frame to process, counted from the run's first one; unset if the run ends with the source or with a
+  /// quit event.
   std::optional<std::int64_t> last_frame;
   std::optional<Interrupt> interrupt;
-  /// Decisions about the recording.
   std::shared_ptr<InputReport> input = std::make_shared<InputReport>();
   std::optional<InputLines> input_lines;
-  /// Frame source. Ends at the source's end or on Ctrl-C.
+  /// Ends at the recording's end or on Ctrl-C.
   std::unique_ptr<FrameSource> source;
   /// The part of `source` that executes camera commands such as hold and rewind. Owned by `source`.
   PlaybackSource* playback = nullptr;
@@ -52,11 +52,13 @@ struct OpenedRun {
   RunTotals totals;
   /// True if an event ended the run.
   bool was_quit = false;
-  /// Set after the last frame: why no object to drop or place was ever in the room; empty if one was.
+  /// Set after the last frame: the reason if every drop and placement failed; else empty.
   std::string nothing_dropped;
 };
 
-/// Opens all inputs and outputs named in the options, reads the map, and creates the session.
+/// Opens all inputs and outputs named in the options, reads the map, and creates the session. Only checks
+/// that the report can be written.
+/// @param options  must outlive the result
 /// @param link  connection to the window; null if there is no window
 /// @throws Error if an input, an output, the map or the session cannot be opened
 std::unique_ptr<OpenedRun> open_run(const RunOptions& options, UiChannel* link);

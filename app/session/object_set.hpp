@@ -70,8 +70,8 @@ inline constexpr double kGentleDrop_m = 0.05;
 struct DropRequest {
   std::string name{};
   std::optional<Eigen::Vector3d> position_world{};  ///< unset: above a level surface in view
-  /// Used without position_world. Set: the search takes the free level place nearest to near_world, at most
-  /// 25 cm away. Unset: the search takes the free level place nearest to the image centre.
+  /// Without position_world: the free level place nearest to this point, at most 25 cm away, is taken. Unset:
+  /// the one nearest to the image centre.
   std::optional<Eigen::Vector3d> near_world{};
   /// Initial height of the object's lowest vertex above the position or surface. Without position_world, the
   /// height is reduced to kGentleDrop_m if the object would not stay otherwise.
@@ -88,7 +88,7 @@ struct WaitingDrop {
 };
 
 /// Throws Error if the object's footprint (circle that it covers seen from above) has a radius above
-/// kMostFootprint_m (1 m), the largest that the search for a surface supports.
+/// kMostFootprint_m, the limit of the search for a surface.
 void require_small_enough(const VirtualObject& object, const DropRequest& drop);
 
 /// Surfaces of a frame, and the queries and physics that simulate an object's fall.
@@ -109,12 +109,12 @@ struct DropView {
 
 /// Result of find_drop_position().
 struct [[nodiscard]] DropPosition {
-  /// Position of the object's origin for which its centre is above the surface point; z is the surface's
-  /// height. Unset: no surface was found.
+  /// x and y: those of the object's origin when its centre is above the point found. z: height of the
+  /// surface. Unset: no surface was found.
   std::optional<Eigen::Vector3d> position_world;
   double height_m = 0.0;  ///< at most DropRequest::height_m
-  /// End of a sentence: why no surface was found, or why the object may not stay or is dropped from a
-  /// smaller height. Empty: the drop is as requested.
+  /// End of a sentence with the reason, if there is one: no surface was found; the object may not stay; it is
+  /// dropped from a smaller height. Empty: the drop is as requested.
   std::string note;
 };
 
@@ -131,7 +131,8 @@ DropPosition find_drop_position(const VirtualObject& object, const DropRequest& 
 /// used.
 class ObjectSet {
  public:
-  /// All arguments must outlive the set. Changes of `config` take effect at the next call.
+  /// All arguments must outlive the set. Changes of `config` take effect at the next call, those of its radar
+  /// by set_radar().
   ObjectSet(GlContext& context, const FrameScene& scene, const SessionRoom& room,
             const SessionConfig& config);
 
@@ -150,10 +151,10 @@ class ObjectSet {
   }
   /// Puts an object into the room. An object that would overlap other objects is placed on top of them if no
   /// surface of the room is in the way. If a surface intersects the object, or a part of it is in solid
-  /// unknown space, it is placed at the nearest free pose within 10 cm. A notice is created if this moves it
-  /// by 5 mm or more. Throws PlaceRefused if no free pose is within 10 cm; the object's pose is then
-  /// unchanged. An object with a velocity may begin in unknown space; a notice says that nothing stops it
-  /// there.
+  /// unknown space, it is placed at the nearest free pose within 10 cm. A notice is created if the object was
+  /// moved by 5 mm or more. An object with a velocity may begin in unknown space; a notice says that nothing
+  /// stops it there. Throws PlaceRefused if no free pose is within 10 cm; the object's pose is then
+  /// unchanged.
   void place(const std::string& name, const ObjectState& state);
   /// Drops an object. With drop.position_world, places it above that position as place() does. Without it,
   /// the drop waits for release_waiting(), and require_small_enough() may throw Error.
@@ -178,7 +179,7 @@ class ObjectSet {
   /// Calls end_departure() for all objects and returns the results. Places an object on top of others that
   /// have taken its place, as place() does. Call after move().
   std::vector<Departure> end_departures();
-  /// Adds a notice that is a whole sentence.
+  /// Adds a notice that names no object.
   void notify(std::string sentence) { notices_.push_back({"", std::move(sentence)}); }
   /// Returns the notices created since the last call.
   std::vector<ObjectNotice> take_notices() { return std::exchange(notices_, {}); }
@@ -196,7 +197,6 @@ class ObjectSet {
 
   /// Throws Error, and changes nothing, if the renderer lacks a feature that RadarMode::kPasses needs.
   void set_radar(const RadarConfig& config);
-  /// Sum of CyberRadar::static_triangles_tested() since construction.
   [[nodiscard]] std::uint64_t static_triangles_tested() const {
     return tested_before_ + radar_.static_triangles_tested();
   }

@@ -24,9 +24,11 @@
 
 namespace roomradar {
 
-/// State of an AR run. The saved map is not modified. Not thread safe: call all functions on the constructing
-/// thread, whose GL context is used. Objects, policies and quality may be changed between frames. A function
-/// that throws Error changes nothing, except that PlaceRefused cancels a waiting drop and ends carrying.
+/// State of an AR run. The map on disk is not modified; committed changes alter the octree that is passed.
+/// Not thread safe: call all functions on the constructing thread, whose GL context is used. Objects,
+/// policies and quality may be changed between frames. A function that throws Error changes nothing, except
+/// that PlaceRefused cancels a waiting drop and ends carrying, and that finish_commits() may leave the octree
+/// changed in part.
 class Session {
  public:
   /// `map` must outlive the session. Throws Error if GL is not available, or a config or the map is invalid.
@@ -42,7 +44,7 @@ class Session {
 
   /// Adds an object, outside the room until placed. Throws Error if the name is taken or the mesh is invalid.
   void add_object(const std::string& name, const Mesh& mesh) { objects_.add(name, Model{.mesh = mesh}); }
-  /// Adds an object with textures. Model::notes become notices.
+  /// Adds an object of a model file's content. Model::notes become notices.
   void add_object(const std::string& name, Model model, const BodyMaterial& material = {}) {
     objects_.add(name, std::move(model), material);
   }
@@ -60,8 +62,9 @@ class Session {
   /// Puts an object into the room with the velocities of `state`.
   void throw_object(const std::string& name, const ObjectState& state) { objects_.place(name, state); }
   /// Drops an object from above a position, or from above a level surface in view. Without a position, the
-  /// drop waits for a frame that shows such a surface; another call for the object cancels it. Throws Error
-  /// without a position if the object's footprint radius is above kMostFootprint_m.
+  /// drop waits for a frame that shows such a surface; place(), drop(), carry(), release() and remove() of
+  /// the object cancel it. Without a position, throws Error if the object's footprint radius is above
+  /// kMostFootprint_m.
   void drop(const DropRequest& drop) { objects_.drop(drop, frames_); }
   /// Moves an object towards a position and holds it there until release(); see ObjectSet::carry().
   void carry(const std::string& name, const Eigen::Vector3d& position_world) {
@@ -71,8 +74,8 @@ class Session {
   void release(const std::string& name, const Eigen::Vector3d& velocity_world_mps) {
     objects_.release(name, velocity_world_mps);
   }
-  /// Rotates an object in the room about its centre until the first contact. turn_world_deg is a rotation
-  /// vector in world axes.
+  /// Rotates an object in the room about the centre of its bounding box until the first contact.
+  /// turn_world_deg is a rotation vector in world axes.
   void turn(const std::string& name, const Eigen::Vector3d& turn_world_deg) {
     objects_.turn(name, turn_world_deg);
   }
@@ -93,13 +96,13 @@ class Session {
   void set_radar(const RadarConfig& config);
   /// Takes effect at once, depth_stride in the next frame. Throws Error if the quality is invalid.
   void set_quality(const RunQuality& quality);
-  /// Takes effect in the next frame, from stage `part` on. Throws Error if the quality is invalid.
+  /// Takes effect in the next frame at stage `part`, or at that frame's end if it has no such stage. Throws
+  /// Error if the quality is invalid.
   void set_quality_from(FramePart part, const RunQuality& quality);
   /// Commits changes in view, see MapUpdater::ask(). Throws Error unless config().map_updates is set.
   void commit_changes();
   /// Returns the notices created since the last frame or call. The next FrameResult::notices then omits them.
   std::vector<ObjectNotice> take_notices() { return objects_.take_notices(); }
-  /// Returns the changes committed to the room so far.
   [[nodiscard]] std::vector<CommittedChange> committed_changes() const;
   [[nodiscard]] const BuildingTracker* building() const { return building_.get(); }  ///< null: a room
   /// Waits for a running commit. Afterwards the octree may be read. Throws as MapUpdater::finish() does.
@@ -107,8 +110,8 @@ class Session {
     if (map_updater_) map_updater_->finish();
   }
 
-  /// Makes this session's GL context current. Call it before using or destroying one of several sessions of a
-  /// thread. Throws Error if GL fails.
+  /// Makes this session's GL context current. If a thread has several sessions, call this before using or
+  /// destroying one of them. Throws Error if GL fails.
   void make_current() const { context_.make_current(); }
   [[nodiscard]] const std::string& renderer() const { return context_.renderer(); }
   [[nodiscard]] const std::vector<std::unique_ptr<VirtualObject>>& objects() const { return objects_.all(); }
@@ -122,7 +125,8 @@ class Session {
   /// that is not localised.
   [[nodiscard]] const std::optional<ShownView>& shown_view() const { return composer_.shown_view(); }
   [[nodiscard]] const FrameScene& scene() const { return scene_; }
-  /// The room's current mesh with all committed changes: as shapes, and as a mesh with colours.
+  /// The room's current mesh with all committed changes: the shape that is drawn and touched, and the mesh
+  /// with colours.
   [[nodiscard]] const Shape& room() const { return room_.shape; }
   [[nodiscard]] const Mesh& room_mesh() const { return map_updater_ ? map_updater_->room().mesh : map_.mesh; }
   /// Longest side of the bounding box of surface and observed space at the session's start, m.
@@ -151,7 +155,8 @@ class Session {
   std::int64_t frames_ = 0;  ///< number of localised frames
   std::optional<double> last_stamp_s_;
 
-  FrameResult pass_through(const Frame& frame, StageTimes& times);  ///< not split: steps in their order
+  FrameResult pass_through(const Frame& frame,
+                           StageTimes& times);  ///< one function, to show the order of the steps
   /// Returns the time since the previous frame, s, >= 0; 0 for the first frame. Stores stamp_s.
   double seconds_since_last(double stamp_s);
   /// Begins a processing stage of the frame: applies the quality scheduled for it, and calls config.watch.

@@ -36,8 +36,8 @@ struct StaticResidual {
 void follow_misfit(const DepthImage& depth_m, const DepthImage& expected_m, const DepthNoise& noise,
                    StaticResidual& fit);
 
-/// Regions found in the previous frame, and buffers that are reused from frame to frame. A new state has no
-/// previous frame.
+/// What was learned from earlier frames (regions of the previous frame, surfaces seen outside the map, misfit
+/// of the model), and buffers that are reused. A new state has no earlier frame.
 struct ForegroundState {
   ForegroundHistory memory;
   UnmappedSpace unmapped;
@@ -57,26 +57,27 @@ struct ForegroundCounts {
   std::size_t not_known = 0;  ///< number of pixels with measured depth that are kNotKnown or kUnmapped
 };
 
-/// Compares a depth frame with the static model's depth at the same pose.
+/// Compares a depth frame with the static model's depth at the same pose. The two images and the camera must
+/// agree in size (asserted).
 ///
-/// @param measured          measured depth; the pose is used to warp the previous frame's regions into this
+/// @param measured          measured depth; the pose is used to warp what earlier frames showed into this
 ///                          frame
 /// @param expected_depth_m  depth of the static model at the camera pose, same size, 0 = no surface
 /// @param state             one per camera; only the first frame of a size allocates
 /// @param labels            resized and set
 /// @param dynamic_mask      255 where the label is kMoved, else 0; resized and set
-/// The two images and the camera must agree in size (asserted).
 ///
 /// A pixel seeds a dynamic region only if it is clearly nearer than the model at that pixel. In addition, the
-/// pixel must be nearer than every model surface within reach, or at a depth at which no surface within reach
-/// is expected. The reach is the max shift of an edge by pose and map errors. Hence edges shifted by a pose
-/// error stay static, and objects between two near edges are found. A region grows from its seeds along the
-/// measured surface, over pixels nearer than the model.
+/// pixel must be nearer than every model surface within reach, or lie between the surfaces within reach. The
+/// reach is the max shift of an edge by pose and map errors. Hence edges shifted by a pose error stay static,
+/// and objects between two near edges are found. A region grows from its seeds along the measured surface,
+/// over pixels nearer than the model.
 ///
-/// A hole of the model is an area without expected depth. It proves no difference. But what this run has seen
-/// in it counts as the model does: a surface nearer than that has come since, as has one where nothing was
-/// measured before. A region can also grow into a hole, over pixels nearer than the model around it. Such
-/// pixels are kUnmapped if they belong to no dynamic region. All other pixels in holes are kNotKnown. In an
+/// A hole of the model is an area without expected depth. A hole alone is no evidence. In a hole, the depth
+/// seen earlier in this run replaces the model: a surface that is nearer is new, and so is one where nothing
+/// was measured before. A region can also grow into a hole, over pixels nearer than the model around it. Such
+/// pixels are kUnmapped if they belong to a large region that is not dynamic. All other pixels in holes are
+/// kNotKnown. In an
 /// unmapped view, all pixels are kNotKnown until something moves in it.
 ///
 /// A region is accepted if it is large enough and has a sufficient fraction of strong pixels. Both thresholds

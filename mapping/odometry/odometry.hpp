@@ -15,9 +15,10 @@ struct OdometrySnapshot;
 
 /// Tracks a camera against keyframes, closes loops, and returns all poses at the end. The world frame is the
 /// camera frame of the first usable frame, unless frames come with poses (add_posed()) or the camera is
-/// localised in a known map. Two background threads connect new keyframes to older ones, and align keyframes
-/// for optimise(). Their results are applied after a fixed number of frames, so poses do not depend on thread
-/// timing. Not thread safe.
+/// localised in a known map. One background thread connects each new keyframe to older ones; its result is
+/// applied 4 frames later, or before the next keyframe, a new part or a search for a lost place if that is
+/// earlier. Another thread aligns keyframes; only optimise() uses its results. Poses therefore depend on the
+/// frames only, not on thread timing. Not thread safe.
 class Odometry {
  public:
   explicit Odometry(const OdometryConfig& config = {});
@@ -26,16 +27,17 @@ class Odometry {
   ~Odometry();
 
   /// Sets the keyframe database of an earlier map; call before the first frame. Each new keyframe is
-  /// localised in the earlier map if possible. Once a keyframe was localised, all poses are in the earlier
-  /// map's world frame, including poses of earlier frames. The earlier map's own poses stay constant.
+  /// localised in the earlier map if possible. Once a keyframe has been localised, all poses are in the
+  /// earlier map's world frame, including poses of earlier frames. The earlier map's own poses stay constant.
   void set_prior_map(KeyframeDatabase known);
 
-  /// Tracks the next frame and returns its current pose estimate. While tracking is lost, tries the last pose
-  /// first, then a search over all keyframes (relocalise()). The images must have the sizes of the frame's
-  /// cameras.
+  /// Tracks the next frame and returns its current pose estimate. A frame that cannot be tracked is tried at
+  /// the last pose, then against all keyframes (relocalise()). If both fail, the frame usually begins a new
+  /// part of the scan; for 1 s, later frames are also tried where tracking was lost. The images must have the
+  /// sizes of the frame's cameras.
   Tracking track(const Frame& frame);
 
-  /// Returns the part of the scan (Keyframe::part) to which the last tracked frame belongs.
+  /// Returns the part (Keyframe::part) of the last tracked frame. A new part begins where tracking was lost.
   [[nodiscard]] int current_part() const;
 
   /// Adds a frame with a given pose. Adds a keyframe to the database if the pose differs enough from those of
@@ -53,8 +55,8 @@ class Odometry {
   /// Returns the state after the last frame, without pending results of the background threads.
   [[nodiscard]] const OdometrySnapshot& state() const;
 
-  /// Waits until the thread that connects keyframes is idle. Call before snapshot(). Changes no pose: the
-  /// thread's result is applied later, at the frame where it is due.
+  /// Waits until the thread that connects keyframes is idle. Changes no pose: the thread's result is
+  /// applied later, at the frame where it is due.
   void finish_jobs();
   /// Returns a copy of the complete state, with the pending result of the thread that connects keyframes
   /// applied. Views are shared, not copied. Call only after finish_jobs().

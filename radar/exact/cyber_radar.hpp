@@ -25,9 +25,9 @@ struct RadarSearch;
 ///
 ///   1. M: per pixel, an upper bound of the object's height along u (ObjectHeightMap). M is kept while the
 ///      object's tree and the direction in the object's frame are unchanged.
-///   2. R: the scene's bounding boxes, from large to small, nearest first (SceneInFrame). A box's least
-///      height minus the greatest M under the box is a lower bound of the distance to every contact in the
-///      box. For a triangle, the bound is computed from the triangle's plane in each pixel of M.
+///   2. R: the scene's bounding boxes, from large to small, nearest first (SceneInFrame). Lower
+///      bound of the distance to every contact in a box: the box's least height minus the greatest M below
+///      it. For a triangle, the bound is computed from the triangle's plane in each pixel of M.
 ///   3. L: the triangle with the least bound gets the exact test, in double, against all object triangles
 ///      that overlap it in projection (search_column, find_gap, classify_pair). The least distance found is
 ///      an upper bound of the result. The least bound of the untested triangles is a lower bound. Once the
@@ -50,17 +50,17 @@ struct RadarSearch;
 /// too. Overlapping intervals are joined. The lower end of the joined interval that contains 0 is
 /// contact_distance_m = lower_m = upper_m. Moved back this far, the object no longer overlaps the scene. An
 /// object sunk in the ground that moves along the ground overlaps it up to the ground's end. The search
-/// therefore stops at a work limit (kMostOverlapWork). Then contact_distance_m = upper_m is the lower end of
-/// the joined interval found so far, and lower_m is -infinity.
+/// therefore stops at a work limit (kMostOverlapWork). The result is then the joined interval found so far:
+/// contact_distance_m = upper_m is its lower end, and lower_m is -infinity.
 ///
 /// Sliding: a scene triangle parallel to the motion (|n . u| <= 1e-9) is no contact for an object triangle
-/// wholly on one side of the scene triangle's plane. Hence an object whose triangles have edges exactly in an
-/// open scene sheet passes the sheet without contact.
+/// wholly on one side of the scene triangle's plane. So an object with edges exactly in an open scene
+/// sheet passes along the sheet.
 ///
-/// Leaving: the object is leaving a back-facing surface that it intersects now. The object intersects
-/// back-facing surfaces over intervals of the distance moved. Overlapping intervals are joined, starting at
-/// 0. Back-facing surfaces cause no contact before the end of the joined interval. Example: a cup is drawn
-/// off a hand in its handle, and the handle's bar has to pass the hand.
+/// Leaving: an object that intersects a back-facing surface now is leaving that surface. The object
+/// intersects back-facing surfaces over intervals of the distance moved. Overlapping intervals are joined,
+/// starting at 0. Back-facing surfaces cause no contact before the end of the joined interval. Example: a cup
+/// is drawn off a hand in its handle, and the handle's bar has to pass the hand.
 ///
 /// One-sided surfaces (is_one_sided()) are touched from their outside only. Their back-facing triangles are
 /// always ignored.
@@ -75,12 +75,16 @@ class CyberRadar final : public Radar {
 
   /// Computes the first contact. Never throws. Allocates nothing once queries of this size have been run.
   ///
-  /// Returns kInvalidInput for an invalid query or scene. A query is invalid if its direction is zero or not
-  /// finite, or its distance is not finite or <= 0. A query is also invalid if its margin is negative or not
-  /// finite, or its object has no triangles. A scene is invalid if a pose (also the object's) is not finite
-  /// or a camera is unusable. A scene is also invalid if a mask's size differs from its depth image's, a
-  /// stride is below 1, or a jump limit is negative or NaN. Sampled mode stops once it has found a contact,
-  /// has run kSampledExactTests exact tests, and the lower bounds of all untested surfaces are at least 0.
+  /// Returns kInvalidInput for an invalid query or scene:
+  /// - query: direction zero or not finite; distance not finite or <= 0; margin negative or not finite;
+  /// object
+  ///   without triangles, or with a pose that is not finite
+  /// - scene: a pose that is not finite; an unusable camera; a mask of another size than its depth image; a
+  ///   stride below 1; a jump limit that is negative or NaN
+  ///
+  /// Sampled mode stops once it has found a contact,
+  /// has run kSampledExactTests exact tests, and the lower bounds of all untested surfaces are at least 0,
+  /// unless the object is leaving a back-facing surface.
   /// Exact mode stops once no untested surface can be nearer.
   Contact query(const RadarQuery& query, const RadarScene& scene) override;
 

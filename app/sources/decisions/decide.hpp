@@ -14,7 +14,7 @@
 
 namespace roomradar {
 
-/// A frame: a depth image, its time, and its colour image.
+/// A depth image with its time and its colour image.
 struct DecidedFrame {
   std::size_t stated = 0;  ///< index in RecordingFacts::frames
   double stamp_s = 0.0;
@@ -28,7 +28,8 @@ struct DepthEvidence {
   double measured_part = 0.0;                    ///< fraction of the pixels with depth
   double median_depth_m = 0.0;                   ///< of the pixels with depth
   double near_depth_m = 0.0, far_depth_m = 0.0;  ///< 5th and 90th percentile
-  /// Greatest depth, if many pixels have exactly it and none has one near it. Unset: there is no such depth.
+  /// Greatest depth, if many pixels have exactly it and hardly any has one near it. Unset: there is no such
+  /// depth.
   std::optional<double> equal_most_m{};
   std::optional<double>
       noise_ratio{};            ///< standard deviation between neighbours / that of the sensor's model
@@ -37,8 +38,8 @@ struct DepthEvidence {
   std::optional<double> far_pose_disagreement{};  ///< the same of pairs farther apart
   double pose_difference_m = 0.0;
   bool poses_disagree = false;
-  bool is_scale_confirmed = false;  ///< depth agrees with the poses much less if it is halved or doubled
-  std::optional<double> still_difference{};  ///< the same, if the camera does not move
+  bool is_scale_confirmed = false;           ///< halving or doubling depth worsens the agreement clearly
+  std::optional<double> still_difference{};  ///< DepthDifference of frames, if the camera does not move
   bool is_camera_still = false;
 };
 
@@ -60,17 +61,17 @@ struct DecidedRecording {
 /// - unit of depth: `options`, else camera.json, else the recording or its format
 /// - poses: `options`, else camera.json, else the convention of the format or, with Questions::kDepth, one
 ///   under which the depth of nearby frames agrees
-/// - with Questions::kDepth: questions whether unit, focal length and poses can be right, see
+/// - with Questions::kDepth: checks whether unit, focal length and poses can be right, see
 ///   depth_evidence.hpp
 /// Each decision becomes one line of the report. Decisions that are only confirmed are not reported.
 /// @param folder  folder in which camera.json and camera-intrinsics.txt are looked for; may be a file
-/// @throws Error if the recording has no frames, none of its depth images can be read, or cameras do not fit
-///         the images
+/// @throws Error if the recording has no frames, none of its depth images can be read, a file with cameras is
+///         invalid, or cameras do not fit the images
 DecidedRecording decide(RecordingFacts facts, const std::filesystem::path& folder,
                         const SourceOptions& options);
 
-/// Returns the pose of frame `frame` + `later_by` as the recording states it. Counts a pose that is none in
-/// the report.
+/// Returns the pose of frame `frame` + `later_by` as the recording states it. Counts in the report a pose
+/// that is lost or not rigid.
 std::optional<Eigen::Isometry3d> stated_pose_of(const DecidedRecording& recording, std::size_t frame,
                                                 int later_by);
 /// Returns T_world_camera of a stated pose.

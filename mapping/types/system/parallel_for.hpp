@@ -1,4 +1,4 @@
-// parallel_for.hpp: distributes independent work items over the process' pool of threads.
+// parallel_for.hpp: distributes independent work items over the process's pool of threads.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -20,15 +20,15 @@ inline int given_or_processors(int given) {
 }
 
 /// Calls work(piece, thread) for each piece in 0..pieces-1, on the caller and up to `threads` - 1 threads of
-/// TBB's pool, which OpenCV uses, too. Two calls at a time never have the same `thread`, a number below
-/// `threads`. Idle threads take the next piece, so results must not depend on the order of the pieces. Waits
-/// for all threads, and rethrows an exception of `work`. While it waits, the caller executes no work of other
-/// calls: it may hold a lock.
+/// TBB's pool, which OpenCV uses, too. `thread` is below `threads` and differs between concurrent calls. Idle
+/// threads take the next piece, so results must not depend on the order of the pieces. Waits for all threads,
+/// and rethrows an exception of `work`. The caller may hold a lock: while it waits, it executes no work of
+/// other calls of this function.
 void parallel_for(std::size_t pieces, unsigned threads,
                   const std::function<void(std::size_t piece, unsigned thread)>& work);
 
-/// Calls work(begin, end) for consecutive ranges of 0..count-1, each of at most `most` (> 0) numbers, on all
-/// processors.
+/// Calls work(begin, end) for consecutive ranges of 0..count-1, each of at most `most` (> 0) numbers, on
+/// hardware_threads() threads.
 template <typename Work>
 void parallel_ranges(std::size_t count, std::size_t most, const Work& work) {
   parallel_for((count + most - 1) / most, hardware_threads(),
