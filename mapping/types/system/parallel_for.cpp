@@ -1,36 +1,43 @@
-// parallel_for.cpp: a TBB task per thread, which takes piece after piece.
+// parallel_for.cpp: one task per thread, which takes piece after piece.
 #include "mapping/types/system/parallel_for.hpp"
 
-#include <atomic>
-
-#if defined(__SANITIZE_THREAD__)
-// The thread sanitizer does not see how TBB synchronises: each call starts threads of its own.
-#include <future>
-#include <vector>
-namespace {
-struct TaskGroup {
-  std::vector<std::future<void>> tasks;
-  template <typename Task>
-  void run(const Task& task) {
-    tasks.push_back(std::async(std::launch::async, task));
-  }
-  void wait() {
-    for (std::future<void>& task : tasks) task.get();
-  }
-};
-template <typename Work>
-void isolate(const Work& work) {
-  work();
-}
-}  // namespace
-#else
+#include <sys/resource.h>
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
-using TaskGroup = tbb::task_group;
-using tbb::this_task_arena::isolate;
-#endif
+#include <unistd.h>
+
+#include <atomic>
+#include <future>
+#include <vector>
 
 namespace roomradar {
+namespace {
+
+using Task = std::function<void(unsigned thread)>;
+
+void run_in_pool(unsigned threads, const Task& task) {
+  tbb::this_task_arena::isolate([&] {  // while it waits, the caller takes no other tasks
+    tbb::task_group group;
+    for (unsigned thread = 1; thread < threads; ++thread) group.run([&task, thread] { task(thread); });
+    group.run_and_wait([&task] { task(0); });
+  });
+}
+
+/// Starts threads, which inherit the caller's priority.
+void run_on_new_threads(unsigned threads, const Task& task) {
+  std::vector<std::future<void>> others;
+  for (unsigned thread = 1; thread < threads; ++thread)
+    others.push_back(std::async(std::launch::async, task, thread));
+  task(0);
+  for (std::future<void>& other : others) other.get();
+}
+
+/// Returns true if the calling thread has another priority than the process, see lower_priority().
+bool has_own_priority() {
+  return getpriority(PRIO_PROCESS, 0) != getpriority(PRIO_PROCESS, static_cast<id_t>(getpid()));
+}
+
+}  // namespace
 
 void parallel_for(std::size_t pieces, unsigned threads,
                   const std::function<void(std::size_t piece, unsigned thread)>& work) {
@@ -38,13 +45,17 @@ void parallel_for(std::size_t pieces, unsigned threads,
   const auto take_pieces = [&](unsigned thread) {
     for (std::size_t piece = next++; piece < pieces; piece = next++) work(piece, thread);
   };
-  if (threads < 2 || pieces < 2) return take_pieces(0);
-  isolate([&] {
-    TaskGroup group;
-    for (unsigned thread = 0; thread < threads && thread < pieces; ++thread)
-      group.run([&take_pieces, thread] { take_pieces(thread); });
-    group.wait();  // the caller takes part
-  });
+  threads = static_cast<unsigned>(std::min<std::size_t>(threads, pieces));
+  if (threads < 2) return take_pieces(0);
+#if defined(__SANITIZE_THREAD__)
+  const bool uses_pool = false;  // the thread sanitizer does not see how TBB synchronises
+#else
+  const bool uses_pool = !has_own_priority();
+#endif
+  if (uses_pool)
+    run_in_pool(threads, take_pieces);
+  else
+    run_on_new_threads(threads, take_pieces);
 }
 
 }  // namespace roomradar

@@ -2,10 +2,15 @@
 #include "mapping/types/system/parallel_for.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <atomic>
+#include <mutex>
 #include <stdexcept>
+#include <thread>
 #include <vector>
+
+#include "mapping/types/system/worker_thread.hpp"
 
 namespace roomradar::parallel_for_test {
 namespace {
@@ -38,6 +43,42 @@ TEST(ParallelFor, AFaultOnAnyThreadReachesTheCaller) {
   };
   EXPECT_THROW(parallel_for(100, 4, work), std::runtime_error);
   EXPECT_THROW(parallel_for(100, 1, work), std::runtime_error);
+}
+
+TEST(ParallelFor, CallsWithinCallsEnd) {
+  std::atomic<int> worked = 0;
+  parallel_for(8, 4,
+               [&](std::size_t, unsigned) { parallel_for(50, 4, [&](std::size_t, unsigned) { ++worked; }); });
+  EXPECT_EQ(worked, 400);
+}
+
+// Whoever waits for its own pieces must not take those of another call, which may need the same lock.
+TEST(ParallelFor, TheCallerMayHoldALock) {
+  std::mutex mutex;
+  std::atomic<int> worked = 0;
+  const auto call = [&] {
+    for (int i = 0; i < 50; ++i) {
+      const std::lock_guard<std::mutex> lock(mutex);
+      parallel_for(20, 4, [&](std::size_t, unsigned) { ++worked; });
+    }
+  };
+  std::thread other(call);
+  call();
+  other.join();
+  EXPECT_EQ(worked, 2 * 50 * 20);
+}
+
+TEST(ParallelFor, ThreadsOfALowPriorityCallerHaveItsPriority) {
+  parallel_for(100, 4, [](std::size_t, unsigned) {});  // the pool has threads of normal priority
+  std::atomic<int> others = 0;
+  std::thread background([&] {
+    lower_priority();
+    const int own = getpriority(PRIO_PROCESS, 0);
+    parallel_for(100, 4,
+                 [&](std::size_t, unsigned) { others += getpriority(PRIO_PROCESS, 0) != own ? 1 : 0; });
+  });
+  background.join();
+  EXPECT_EQ(others, 0);
 }
 
 }  // namespace
