@@ -1,6 +1,7 @@
 // parallel_for.cpp: one task per thread, which takes piece after piece.
 #include "mapping/types/system/parallel_for.hpp"
 
+#include <pthread.h>
 #include <sys/resource.h>
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
@@ -37,6 +38,11 @@ bool has_own_priority() {
   return getpriority(PRIO_PROCESS, 0) != getpriority(PRIO_PROCESS, static_cast<id_t>(getpid()));
 }
 
+/// True in a child of fork(), which has the pool's state but not its threads: if the child used the pool, TBB
+/// would abort at its exit.
+std::atomic<bool> is_child_of_fork = false;
+[[maybe_unused]] const int kIsRegistered = pthread_atfork(nullptr, nullptr, [] { is_child_of_fork = true; });
+
 }  // namespace
 
 void parallel_for(std::size_t pieces, unsigned threads,
@@ -50,7 +56,7 @@ void parallel_for(std::size_t pieces, unsigned threads,
 #if defined(__SANITIZE_THREAD__)
   const bool uses_pool = false;  // the thread sanitizer does not see how TBB synchronises
 #else
-  const bool uses_pool = !has_own_priority();
+  const bool uses_pool = !has_own_priority() && !is_child_of_fork;
 #endif
   if (uses_pool)
     run_in_pool(threads, take_pieces);

@@ -22,9 +22,9 @@ inline int given_or_processors(int given) {
 /// Calls work(piece, thread) for each piece in 0..pieces-1, on the caller and up to `threads` - 1 threads of
 /// TBB's pool, which OpenCV uses, too. `thread` is below `threads` and differs between concurrent calls. Idle
 /// threads take the next piece, so results must not depend on the order of the pieces. Waits for all threads,
-/// and rethrows an exception of `work`. A caller with lowered priority (lower_priority()) gets threads of its
-/// own, of the same priority. The caller may hold a lock: while it waits, it executes no work of
-/// other calls of this function.
+/// and rethrows an exception of `work`. A caller with lowered priority (lower_priority()), and a child of
+/// fork(), gets threads of its own, of the same priority. The caller may hold a lock: while it waits, it
+/// executes no work of other calls of this function.
 void parallel_for(std::size_t pieces, unsigned threads,
                   const std::function<void(std::size_t piece, unsigned thread)>& work);
 

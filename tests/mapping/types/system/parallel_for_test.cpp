@@ -3,8 +3,12 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <atomic>
+#include <cstdio>
+#include <cstdlib>
 #include <mutex>
 #include <stdexcept>
 #include <thread>
@@ -79,6 +83,21 @@ TEST(ParallelFor, ThreadsOfALowPriorityCallerHaveItsPriority) {
   });
   background.join();
   EXPECT_EQ(others, 0);
+}
+
+TEST(ParallelFor, AChildOfForkWorksAndEnds) {
+  const auto work = [](std::size_t, unsigned) {};
+  parallel_for(100, 4, work);  // the pool has threads, which a child has not
+  std::fflush(nullptr);
+  const pid_t child = fork();
+  if (child == 0) {
+    std::atomic<int> worked = 0;
+    parallel_for(100, 4, [&](std::size_t, unsigned) { ++worked; });
+    std::exit(worked == 100 ? 0 : 1);
+  }
+  int status = -1;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
 }
 
 }  // namespace
