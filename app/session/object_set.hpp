@@ -20,7 +20,7 @@
 #include "app/session/object_overlap.hpp"
 #include "app/session/session_config.hpp"
 #include "app/session/session_room.hpp"
-#include "dynamic/surface/dynamic_surface_config.hpp"
+#include "dynamic/surface/dynamic_surface.hpp"
 #include "mapping/types/intrinsics.hpp"
 #include "mapping/types/system/stage_times.hpp"
 #include "radar/batch/passes_radar.hpp"

@@ -5,7 +5,7 @@
 
 #include "dynamic/surface/depth_discontinuity.hpp"
 #include "dynamic/surface/dynamic_lattice.hpp"
-#include "dynamic/surface/dynamic_view.hpp"
+#include "dynamic/surface/dynamic_pixels.hpp"
 #include "mapping/types/image.hpp"
 
 namespace roomradar {

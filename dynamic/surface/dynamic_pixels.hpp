@@ -1,12 +1,21 @@
-// dynamic_pixels.hpp: dynamic pixels as bits and inverse depths, with a smoothed outline (contour of the
-// mask).
+// dynamic_pixels.hpp: a depth frame divided into dynamic pixels and static model; the dynamic pixels as bits
+// and inverse depths, with a smoothed outline (contour of the mask).
 #pragma once
 #include <vector>
 
 #include "dynamic/surface/pixel_bits.hpp"
 #include "mapping/types/image.hpp"
+#include "mapping/types/posed_depth.hpp"
 
 namespace roomradar {
+
+/// A depth frame, its dynamic pixels, and the static model's depth in the same view. Refers to the images,
+/// which must outlive it and have the size of `measured`.
+struct DynamicView {
+  PosedDepth measured;
+  const MaskImage& dynamic_mask;       ///< not 0: dynamic
+  const DepthImage& expected_depth_m;  ///< depth of the static model, m; 0: unknown
+};
 
 /// Dynamic pixels of one frame. Depths are stored as inverse depths because a plane's inverse depth is linear
 /// over the image.
