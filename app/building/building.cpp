@@ -11,8 +11,8 @@
 
 #include "app/building/tileset.hpp"
 #include "app/farm/content_hashes.hpp"
-#include "mapping/building/look_alikes.hpp"
-#include "mapping/building/submap_join_file.hpp"
+#include "mapping/building/join_choice.hpp"
+#include "mapping/building/submap_join.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/folder_entries.hpp"

@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include "mapping/building/retrieval_files.hpp"
+#include "mapping/building/keyframe_retrieval.hpp"
 #include "mapping/storage/sha256.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"

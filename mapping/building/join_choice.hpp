@@ -1,4 +1,5 @@
-// join_choice.hpp: chooses the joins of a building that can all be right.
+// join_choice.hpp: chooses the joins of a building that can all be right; finds the places that the refused
+// ones mistake for each other.
 #pragma once
 #include <cstddef>
 #include <functional>
@@ -7,6 +8,7 @@
 
 #include "mapping/building/building_graph.hpp"
 #include "mapping/building/submap_overlap.hpp"
+#include "mapping/localization/keyframe_database.hpp"
 
 namespace roomradar {
 
@@ -24,5 +26,13 @@ namespace roomradar {
 /// problem); hitting_set.hpp (the solution).
 std::vector<bool> choose_joins(std::span<const GraphSubmap> submaps, std::span<const GraphJoin> joins,
                                const TestOverlap& test_overlap);
+
+/// Returns pairs of places that look alike, in both directions: each refused join mistakes one place for the
+/// other. Returns at most 12 pairs per join, at links spread evenly along the join. Ignores joins outside the
+/// connected component `part`. Also ignores links that would move a place by less than 0.5 m and 0.5 rad,
+/// since such joins are only inaccurate.
+/// @param refused  joins that are not used, and joins with a status other than kJoined
+std::vector<LookAlike> find_look_alikes(std::span<const PlacedSubmap> submaps, std::size_t part,
+                                        std::span<const GraphJoin> refused);
 
 }  // namespace roomradar

@@ -1,10 +1,12 @@
-// submap_join.cpp: keyframes vote for a relative pose; depth and features of those around test it.
+// submap_join.cpp: keyframes vote for a relative pose; depth and features of those around test it. Joins are
+// stored as one binary file, with a checksum.
 #include "mapping/building/submap_join.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
 #include <map>
+#include <string_view>
 
 #include "mapping/alignment/align.hpp"
 #include "mapping/alignment/view.hpp"
@@ -12,6 +14,7 @@
 #include "mapping/localization/place_matching.hpp"
 #include "mapping/localization/pose_hypothesis.hpp"
 #include "mapping/odometry/keyframe_graph.hpp"
+#include "mapping/storage/binary_file.hpp"
 #include "mapping/types/system/classic_locale.hpp"
 
 namespace roomradar {
@@ -172,6 +175,9 @@ SubmapJoin judged(const Submap& a, const Submap& b, const std::vector<Vote>& agr
   return join;
 }
 
+constexpr std::string_view kJoinsMagic = "RRJOINED";
+constexpr std::uint32_t kJoinsVersion = 1;
+
 }  // namespace
 
 std::string describe(const SubmapJoin& join) {
@@ -212,6 +218,29 @@ std::vector<SubmapJoin> join_submaps(const Submap& a, const Submap& b,
     std::erase_if(votes, [&](const Vote& vote) { return agree(vote, chosen, b); });
   }
   if (joins.empty()) joins.emplace_back();
+  return joins;
+}
+
+template <typename Archive>
+static void serialize(Archive& archive, Ref<Archive, KeyframeLink> link) {
+  static_assert(sizeof link.a == sizeof(std::uint64_t));
+  archive(link.a, link.b, link.T_a_b);
+  serialize_finite(archive, "is damaged: a link's information", link.information);
+}
+
+template <typename Archive>
+static void serialize(Archive& archive, Ref<Archive, SubmapJoin> join) {
+  serialize(archive, join.status, JoinStatus::kLooksDifferent);
+  archive(join.links, join.T_a_b, join.agreeing, join.expected, join.recognised, join.agreement);
+}
+
+void save_joins(const std::vector<SubmapJoin>& joins, const std::filesystem::path& path) {
+  save_binary(path, kJoinsMagic, kJoinsVersion, joins);
+}
+
+std::vector<SubmapJoin> load_joins(const std::filesystem::path& path) {
+  std::vector<SubmapJoin> joins;
+  load_binary(path, kJoinsMagic, kJoinsVersion, joins);
   return joins;
 }
 

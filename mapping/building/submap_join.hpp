@@ -1,8 +1,10 @@
-// submap_join.hpp: proves that two recordings show the same place, and measures their relative pose.
+// submap_join.hpp: proves that two recordings show the same place, and measures their relative pose; writes
+// and reads the result.
 #pragma once
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cstddef>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <utility>
@@ -77,5 +79,11 @@ std::vector<Value> spread_evenly(const std::vector<Value>& values, std::size_t c
 std::vector<SubmapJoin> join_submaps(const Submap& a, const Submap& b,
                                      std::span<const std::pair<std::size_t, std::size_t>> keyframes,
                                      const JoinConfig& config = {});
+
+/// Writes the outcome of comparing two submaps. Throws Error if the file cannot be written.
+void save_joins(const std::vector<SubmapJoin>& joins, const std::filesystem::path& path);
+/// Reads the joins. Throws Error naming the file and the fault if it is missing, damaged or of another
+/// version.
+std::vector<SubmapJoin> load_joins(const std::filesystem::path& path);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// tile_grid.cpp: places and names of tiles.
+// tile_grid.cpp: places and names of tiles, and the part of the surface in a tile's cube.
 #include "mapping/building/tile_grid.hpp"
 
 #include <algorithm>
@@ -103,6 +103,11 @@ TileIndex tile_of_name(std::string_view name) {
     if (axis == 2 && at == end && name_of(tile) == name) return tile;
   }
   throw Error("'" + std::string(name) + "' is not a tile name; it must be three whole numbers, like 3_-1_0");
+}
+
+Mesh extract_tile_surface(const StaticMap& map, const TileGrid& grid, const TileIndex& tile,
+                          const SurfaceConfig& config) {
+  return extract_surface_part(map, box_of(grid, tile), config).mesh;
 }
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// tile_grid.hpp: the cubes into which a building's octree is split.
+// tile_grid.hpp: the cubes into which a building's octree is split, and the surface of one of them.
 #pragma once
 #include <Eigen/Geometry>
 #include <string>
@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "mapping/octree/static_map.hpp"
+#include "mapping/surface/surface_extraction.hpp"
+#include "mapping/types/mesh.hpp"
 
 namespace roomradar {
 
@@ -44,5 +46,13 @@ bool is_before(const TileIndex& a, const TileIndex& b);
 std::string name_of(const TileIndex& tile);
 /// Returns the tile with this name. Throws Error if the name is not of this form.
 TileIndex tile_of_name(std::string_view name);
+
+/// Extracts a tile's part of a building's surface: the triangles with a centre in the tile's cube. The tiles
+/// together are the surface of the whole map. Tiles are extracted independently, without cracks between them:
+/// simplification does not move vertices that two tiles share, so they have bit-identical coordinates in
+/// both. Colours as in extract_surface().
+/// @param map  must contain all samples within kSurfaceReach_voxels of the tile
+Mesh extract_tile_surface(const StaticMap& map, const TileGrid& grid, const TileIndex& tile,
+                          const SurfaceConfig& config = {});
 
 }  // namespace roomradar

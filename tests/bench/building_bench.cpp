@@ -17,7 +17,6 @@
 #include "app/building/building_stages.hpp"
 #include "mapping/building/building_info.hpp"
 #include "mapping/building/submap_join.hpp"
-#include "mapping/building/submap_join_file.hpp"
 #include "mapping/odometry/keyframe_graph.hpp"
 #include "mapping/types/trajectory.hpp"
 #include "tests/bench/bench_program.hpp"

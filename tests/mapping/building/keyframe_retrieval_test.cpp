@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "mapping/building/retrieval_files.hpp"
 #include "mapping/types/system/error.hpp"
 #include "tests/support/temporary_folder.hpp"
 

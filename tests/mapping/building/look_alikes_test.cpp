@@ -1,5 +1,5 @@
 // look_alikes_test.cpp: the motion from a room to its twin, from joins that were refused.
-#include "mapping/building/look_alikes.hpp"
+#include "mapping/building/join_choice.hpp"
 
 #include <gtest/gtest.h>
 

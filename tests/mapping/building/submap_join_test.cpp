@@ -1,6 +1,5 @@
 // submap_join_test.cpp: two recordings of one place are joined; places that only seem to be one are not.
 #include "mapping/building/submap_join.hpp"
-#include "mapping/building/submap_join_file.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // tile_surface_test.cpp: the tiles' surfaces together are the whole surface, without a crack.
-#include "mapping/building/tile_surface.hpp"
+#include "mapping/building/tile_grid.hpp"
 
 #include <gtest/gtest.h>
 
