@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "mapping/coverage/hole.hpp"
+#include "mapping/coverage/holes.hpp"
 #include "mapping/map/map_diff.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/texture/surface_texture.hpp"

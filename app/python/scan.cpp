@@ -15,7 +15,7 @@
 #include "app/python/maps.hpp"
 #include "app/python/sources.hpp"
 #include "app/sources/recordings/spooled_source.hpp"
-#include "mapping/coverage/hole.hpp"
+#include "mapping/coverage/holes.hpp"
 #include "mapping/prescan.hpp"
 #include "mapping/types/system/format_number.hpp"
 

@@ -3,7 +3,7 @@
 #pragma once
 #include <vector>
 
-#include "mapping/coverage/hole.hpp"
+#include "mapping/coverage/holes.hpp"
 #include "mapping/coverage/occupancy_cells.hpp"
 
 namespace roomradar {

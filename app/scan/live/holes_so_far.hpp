@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "app/scan/live/exploration_grid.hpp"
-#include "mapping/coverage/hole.hpp"
+#include "mapping/coverage/holes.hpp"
 
 namespace roomradar {
 

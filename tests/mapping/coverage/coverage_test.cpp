@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mapping/coverage/coverage_picture.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/surface/surface_extraction.hpp"
 #include "tests/support/exact_depth.hpp"
