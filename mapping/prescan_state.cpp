@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <string>
 
-#include "mapping/localization/keyframe_database_file.hpp"
+#include "mapping/localization/keyframe_database.hpp"
 #include "mapping/odometry/odometry_checkpoint.hpp"
 #include "mapping/storage/binary_file.hpp"
 

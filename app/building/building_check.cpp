@@ -6,7 +6,7 @@
 
 #include "app/building/tileset.hpp"
 #include "mapping/building/building_info.hpp"
-#include "mapping/localization/keyframe_database_file.hpp"
+#include "mapping/localization/keyframe_database.hpp"
 #include "mapping/map/unknown_surface_file.hpp"
 #include "mapping/octree/static_map.hpp"
 #include "mapping/storage/sha256.hpp"

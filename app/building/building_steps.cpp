@@ -15,7 +15,7 @@
 #include "mapping/building/submap_join.hpp"
 #include "mapping/building/tile_grid.hpp"
 #include "mapping/deskewed_source.hpp"
-#include "mapping/localization/keyframe_database_file.hpp"
+#include "mapping/localization/keyframe_database.hpp"
 #include "mapping/map/level_surfaces.hpp"
 #include "mapping/map/unknown_surface_file.hpp"
 #include "mapping/mesh/mesh_file.hpp"

@@ -10,7 +10,7 @@
 #include "app/building/building_summary.hpp"
 #include "app/building/tileset.hpp"
 #include "mapping/building/building_map.hpp"
-#include "mapping/localization/keyframe_database_file.hpp"
+#include "mapping/localization/keyframe_database.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/map/map_info_json.hpp"
 #include "mapping/storage/sha256.hpp"

@@ -10,7 +10,7 @@
 #include <unordered_map>
 
 #include "mapping/alignment/keyframe.hpp"
-#include "mapping/localization/keyframe_database_file.hpp"
+#include "mapping/localization/keyframe_database.hpp"
 #include "mapping/types/fibonacci_hash.hpp"
 #include "mapping/types/system/error.hpp"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "mapping/localization/keyframe_database_file.hpp"
+#include "mapping/localization/keyframe_database.hpp"
 #include "mapping/storage/binary_file.hpp"
 #include "mapping/types/system/error.hpp"
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "mapping/localization/keyframe_proof.hpp"
 #include "mapping/localization/place_matching.hpp"
 #include "mapping/localization/pose_hypothesis.hpp"
-#include "mapping/localization/preview_overlap.hpp"
 #include "mapping/odometry/keyframe_graph.hpp"
 
 namespace roomradar {

@@ -1,4 +1,4 @@
-// keyframe_database.hpp: keyframes of a map, used for relocalisation in a known room.
+// keyframe_database.hpp: keyframes of a map, used for relocalisation in a known room, and their file.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -10,6 +10,7 @@
 
 #include "mapping/localization/feature_index.hpp"
 #include "mapping/localization/patches.hpp"
+#include "mapping/storage/binary_file.hpp"
 #include "mapping/types/frame.hpp"
 
 namespace roomradar {
@@ -63,5 +64,13 @@ MapKeyframe make_map_keyframe(const Frame& frame, const Eigen::Isometry3d& T_wor
 
 /// Moves the database into another world frame: each pose becomes T_new_old * pose.
 void transform(KeyframeDatabase& keyframe_database, const Eigen::Isometry3d& T_new_old);
+
+/// Writes the database to `path`, with a checksum. Throws Error if the file cannot be written.
+void write_keyframe_database(const KeyframeDatabase& keyframe_database, const std::filesystem::path& path);
+
+/// Reads a file written by write_keyframe_database(). Throws Error naming the file and the fault if the file
+/// is missing, truncated, altered, or of another version. Sizes are checked before memory is allocated.
+KeyframeDatabase read_keyframe_database(const std::filesystem::path& path,
+                                        FileChecksum checksum = FileChecksum::kCompared);
 
 }  // namespace roomradar

@@ -1,4 +1,5 @@
-// keyframe_proof.hpp: geometric verification of a frame's pose relative to a keyframe, by the depth of both.
+// keyframe_proof.hpp: geometric verification of a frame's pose relative to a keyframe, by the depth of both;
+// comparison of the depth of two keyframes.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -48,5 +49,19 @@ const KeyframeWitness& best_of(std::span<const KeyframeWitness> witnesses);
 /// one. This averages the errors of the keyframes' poses.
 Eigen::Isometry3d joint_pose(std::span<const KeyframeWitness> witnesses, const KeyframeWitness& best,
                              const SourcePoints& live, const KeyframeDatabase& keyframe_database);
+
+/// Pixel counts of one preview (a keyframe's downsampled depth image) compared with another, over every
+/// fourth pixel of every fourth row.
+struct PreviewOverlap {
+  int valid = 0;    ///< number of pixels with depth of at most 4 m
+  int same = 0;     ///< number of valid pixels on the other preview's surface
+  int through = 0;  ///< number of valid pixels in front of that surface: the other camera saw through them
+};
+
+/// Compares the depth of a keyframe with that of another.
+/// @param T_to_from    relative pose of the two cameras
+/// @param tolerance_m  max assumed error of T_to_from, added to the noise of the depth
+PreviewOverlap compare_previews(const MapKeyframe& from, const MapKeyframe& to,
+                                const Eigen::Isometry3d& T_to_from, double tolerance_m);
 
 }  // namespace roomradar

@@ -9,7 +9,7 @@
 #include "mapping/alignment/feature_flow.hpp"
 #include "mapping/alignment/motion_prior.hpp"
 #include "mapping/alignment/stationary_camera.hpp"
-#include "mapping/localization/depth_agreement.hpp"
+#include "mapping/localization/pose_hypothesis.hpp"
 #include "mapping/types/linear_algebra.hpp"
 
 namespace roomradar {

@@ -1,4 +1,5 @@
-// pose_hypothesis.cpp: thresholds on the agreement in depth and appearance that accept a pose.
+// pose_hypothesis.cpp: agreement of a depth image with the depth expected at a pose; thresholds on the
+// agreement in depth and appearance that accept a pose.
 #include "mapping/localization/pose_hypothesis.hpp"
 
 #include <algorithm>
@@ -14,6 +15,26 @@ constexpr int kFewPatches = 12;  // with fewer, the fraction alike is meaningles
 constexpr double kContradicted = 0.2;  // with more patches, a pose with a smaller fraction alike is wrong
 
 }  // namespace
+
+DepthAgreement depth_agreement_of(const DepthImage& depth_m, const DepthImage& expected_m) {
+  constexpr int kStep_px = 4;
+  constexpr float kAlike_per_m = 0.02F;  // in inverse depth; 5 steps of a Kinect's disparity are 0.014
+  constexpr float kAlike_m = 0.006F;     // nearer than 0.55 m, a map's voxels of 1 cm are coarser than that
+  DepthAgreement agreement;
+  for (int y = 0; y < depth_m.height; y += kStep_px) {
+    for (int x = 0; x < depth_m.width; x += kStep_px) {
+      const float live = depth_m.at(x, y), expected = expected_m.at(x, y);
+      if (!(live > 0.0F)) continue;
+      ++agreement.valid;
+      if (!(expected > 0.0F)) continue;
+      ++agreement.both;
+      const float gap_m = std::max(kAlike_per_m * live * expected, kAlike_m);
+      agreement.alike += std::abs(live - expected) < gap_m;
+      agreement.farther += live - expected >= gap_m;
+    }
+  }
+  return agreement;
+}
 
 bool is_near(const Eigen::Isometry3d& T_world_a, const Eigen::Isometry3d& T_world_b, double reach_m,
              double reach_rad) {

@@ -10,7 +10,6 @@
 #include "mapping/localization/keyframe_proof.hpp"
 #include "mapping/localization/place_matching.hpp"
 #include "mapping/localization/pose_hypothesis.hpp"
-#include "mapping/localization/preview_overlap.hpp"
 
 namespace roomradar {
 namespace {

@@ -11,7 +11,7 @@
 #include <optional>
 #include <string_view>
 
-#include "mapping/localization/keyframe_database_file.hpp"
+#include "mapping/localization/keyframe_database.hpp"
 #include "mapping/map/map_info_json.hpp"
 #include "mapping/map/unknown_surface_file.hpp"
 #include "mapping/mesh/mesh_file.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "mapping/localization/keyframe_database_file.hpp"
+#include "mapping/localization/keyframe_database.hpp"
 #include "mapping/map/map_info_json.hpp"
 #include "mapping/map/unknown_surface_file.hpp"
 #include "mapping/mesh/mesh_file.hpp"

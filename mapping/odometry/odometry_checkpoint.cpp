@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "mapping/alignment/packed_view.hpp"
-#include "mapping/localization/keyframe_database_file.hpp"
+#include "mapping/localization/keyframe_database.hpp"
 #include "mapping/odometry/odometry_snapshot.hpp"
 #include "mapping/storage/binary_file.hpp"
 #include "mapping/storage/checkpoints.hpp"

@@ -1,6 +1,5 @@
 // map_fuzz.cpp: the files of a map folder, by the first byte, as they are read once their checksums match.
 #include "mapping/localization/keyframe_database.hpp"
-#include "mapping/localization/keyframe_database_file.hpp"
 #include "mapping/map/unknown_surface_file.hpp"
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/octree/static_map.hpp"

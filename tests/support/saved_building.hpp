@@ -8,7 +8,7 @@
 #include "app/cli/open_source.hpp"
 #include "mapping/building/building_info.hpp"
 #include "mapping/building/tile_grid.hpp"
-#include "mapping/localization/keyframe_database_file.hpp"
+#include "mapping/localization/keyframe_database.hpp"
 #include "mapping/map/unknown_surface_file.hpp"
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/storage/sha256.hpp"

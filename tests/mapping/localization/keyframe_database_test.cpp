@@ -8,7 +8,6 @@
 #include <sstream>
 
 #include "app/sources/recordings/folder_source.hpp"
-#include "mapping/localization/keyframe_database_file.hpp"
 #include "mapping/localization/relocalise.hpp"
 #include "mapping/odometry/odometry.hpp"
 #include "mapping/storage/binary_file.hpp"

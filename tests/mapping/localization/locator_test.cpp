@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "mapping/localization/depth_agreement.hpp"
+#include "mapping/localization/pose_hypothesis.hpp"
 #include "tests/support/exact_depth.hpp"
 #include "tests/support/painted_frame.hpp"
 
