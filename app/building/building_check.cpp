@@ -7,9 +7,9 @@
 #include "app/building/tileset.hpp"
 #include "mapping/building/building_info.hpp"
 #include "mapping/localization/keyframe_database.hpp"
-#include "mapping/map/unknown_surface_file.hpp"
 #include "mapping/octree/static_map.hpp"
 #include "mapping/storage/sha256.hpp"
+#include "mapping/surface/unknown/unknown_surface.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 

@@ -18,7 +18,7 @@
 #include "mapping/map/level_surfaces.hpp"
 #include "mapping/map/map_export.hpp"
 #include "mapping/map/map_folder.hpp"
-#include "mapping/map/map_info_json.hpp"
+#include "mapping/map/map_info.hpp"
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/surface/unknown/unknown_surface.hpp"
 #include "mapping/types/system/classic_locale.hpp"

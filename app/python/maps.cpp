@@ -11,7 +11,7 @@
 #include "mapping/map/level_surfaces.hpp"
 #include "mapping/map/map_diff.hpp"
 #include "mapping/map/map_export.hpp"
-#include "mapping/map/map_info_json.hpp"
+#include "mapping/map/map_info.hpp"
 #include "mapping/map/map_merge.hpp"
 #include "mapping/map/map_writer.hpp"
 #include "mapping/types/system/format_number.hpp"

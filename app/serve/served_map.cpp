@@ -12,7 +12,7 @@
 #include "mapping/building/building_map.hpp"
 #include "mapping/localization/keyframe_database.hpp"
 #include "mapping/map/map_folder.hpp"
-#include "mapping/map/map_info_json.hpp"
+#include "mapping/map/map_info.hpp"
 #include "mapping/storage/sha256.hpp"
 #include "mapping/types/system/error.hpp"
 

@@ -12,11 +12,11 @@
 #include <string_view>
 
 #include "mapping/localization/keyframe_database.hpp"
-#include "mapping/map/map_info_json.hpp"
-#include "mapping/map/unknown_surface_file.hpp"
+#include "mapping/map/map_info.hpp"
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/storage/atomic_folder.hpp"
 #include "mapping/storage/sha256.hpp"
+#include "mapping/surface/unknown/unknown_surface.hpp"
 #include "mapping/texture/surface_texture_file.hpp"
 #include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"

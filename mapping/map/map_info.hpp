@@ -1,4 +1,4 @@
-// map_info.hpp: content of a map's map.json.
+// map_info.hpp: content of a map's map.json, and its conversion from and to JSON.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -63,5 +63,12 @@ std::string describe_up(const std::string& up_source);
 
 /// Returns the output of `roomradar map info`.
 std::string describe(const MapInfo& info);
+
+std::string to_json(const MapInfo& info);
+
+/// Parses and validates the text of map.json. Throws Error if the text is not JSON, not a map's or of a later
+/// format version. Also throws if a field is missing, of the wrong type or out of range. The message starts
+/// with `where` (the file's path) and names the fault.
+MapInfo parse_map_info(const std::string& text, const std::string& where);
 
 }  // namespace roomradar

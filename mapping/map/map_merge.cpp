@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "mapping/coverage/coverage.hpp"
-#include "mapping/map/map_texture.hpp"
+#include "mapping/map/changed_map.hpp"
 #include "mapping/map/surface_points.hpp"
 #include "mapping/map/tsdf_interpolation.hpp"
 #include "mapping/types/system/classic_locale.hpp"

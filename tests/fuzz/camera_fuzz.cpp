@@ -3,7 +3,7 @@
 #include "app/sources/datasets/dataset_readers.hpp"
 #include "app/sources/decisions/camera_choice.hpp"
 #include "app/sources/formats/camera_rig.hpp"
-#include "mapping/map/map_info_json.hpp"
+#include "mapping/map/map_info.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

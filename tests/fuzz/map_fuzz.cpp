@@ -1,8 +1,8 @@
 // map_fuzz.cpp: the files of a map folder, by the first byte, as they are read once their checksums match.
 #include "mapping/localization/keyframe_database.hpp"
-#include "mapping/map/unknown_surface_file.hpp"
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/octree/static_map.hpp"
+#include "mapping/surface/unknown/unknown_surface.hpp"
 #include "mapping/texture/surface_texture_file.hpp"
 #include "mapping/types/codecs/jpeg.hpp"
 #include "mapping/types/trajectory.hpp"

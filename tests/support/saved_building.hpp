@@ -9,9 +9,9 @@
 #include "mapping/building/building_info.hpp"
 #include "mapping/building/tile_grid.hpp"
 #include "mapping/localization/keyframe_database.hpp"
-#include "mapping/map/unknown_surface_file.hpp"
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/storage/sha256.hpp"
+#include "mapping/surface/unknown/unknown_surface.hpp"
 
 namespace roomradar::test {
 

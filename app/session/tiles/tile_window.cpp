@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "mapping/map/unknown_surface_file.hpp"
+#include "mapping/surface/unknown/unknown_surface.hpp"
 #include "mapping/types/system/config_check.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/process_memory.hpp"

@@ -1,6 +1,8 @@
-// unknown_surface.hpp: extracts the border between observed free space and unknown space as a surface.
+// unknown_surface.hpp: extracts the border between observed free space and unknown space as a surface; reads
+// and writes it as a binary file.
 #pragma once
 #include <cstddef>
+#include <filesystem>
 
 #include "mapping/octree/static_map.hpp"
 #include "mapping/surface/unknown/run_grid.hpp"
@@ -58,5 +60,14 @@ UnknownSurface unknown_surface(const StaticMap& map, const Mesh& surface_world,
 /// Returns true if a point is in unknown space that counts, or is not finite. Returns false for every point
 /// if the map had no free space.
 bool is_unknown(const UnknownSurface& surface, const Eigen::Vector3d& p_world);
+
+/// Writes the surface and the cells of unknown space as one binary file with a checksum. Throws Error if the
+/// file cannot be written.
+void write_unknown_surface(const UnknownSurface& surface, const std::filesystem::path& path);
+
+/// Reads a file written by write_unknown_surface(). UnknownSurface::memory_bytes is not stored and is 0.
+/// Throws Error naming the file and the fault if the file is missing, truncated, altered, or of another
+/// version. Sizes are checked before memory is allocated.
+UnknownSurface read_unknown_surface(const std::filesystem::path& path);
 
 }  // namespace roomradar

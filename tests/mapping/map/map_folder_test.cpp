@@ -19,7 +19,7 @@
 #include <thread>
 
 #include "mapping/map/map_export.hpp"
-#include "mapping/map/map_info_json.hpp"
+#include "mapping/map/map_info.hpp"
 #include "mapping/map/map_writer.hpp"
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/storage/atomic_folder.hpp"

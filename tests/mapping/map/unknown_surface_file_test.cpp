@@ -1,6 +1,6 @@
 // unknown_surface_file_test.cpp: the border of unknown space comes back from its file, and damage is
 // reported.
-#include "mapping/map/unknown_surface_file.hpp"
+#include "mapping/surface/unknown/unknown_surface.hpp"
 
 #include <gtest/gtest.h>
 
