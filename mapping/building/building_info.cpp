@@ -5,7 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "mapping/mesh/serialize_mesh.hpp"
+#include "mapping/mesh/mesh_file.hpp"
 #include "mapping/storage/binary_file.hpp"
 #include "mapping/types/system/atomic_file.hpp"
 #include "mapping/types/system/error.hpp"

@@ -23,7 +23,6 @@
 #include "mapping/mesh/gltf_scene.hpp"
 #include "mapping/mesh/ply_file.hpp"
 #include "mapping/mesh/scene_mesh.hpp"
-#include "mapping/mesh/serialize_mesh.hpp"
 #include "mapping/types/system/atomic_file.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"

@@ -1,4 +1,5 @@
-// mesh_file.hpp: reads and writes triangle meshes as .ply, .obj, .stl and .glb.
+// mesh_file.hpp: reads and writes triangle meshes as .ply, .obj, .stl and .glb, and as bytes in files of the
+// project.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -7,6 +8,7 @@
 
 #include "mapping/mesh/assimp_import.hpp"
 #include "mapping/types/mesh.hpp"
+#include "mapping/types/serialize.hpp"
 
 namespace roomradar {
 
@@ -40,5 +42,15 @@ void write_mesh(const TexturedMesh& textured, const std::filesystem::path& path)
 
 /// Returns true if write_mesh() writes textures in the format that the extension names.
 bool keeps_texture(const std::filesystem::path& path);
+
+/// Reads or writes a mesh. Reading checks sizes only; triangles may have indices past the last vertex.
+template <typename Archive>
+void serialize(Archive& archive, Ref<Archive, Mesh> mesh) {
+  archive(mesh.origin);
+  serialize_items(archive, mesh.normals);
+  serialize_items(archive, mesh.vertices);
+  serialize_items(archive, mesh.colours);
+  serialize_items(archive, mesh.triangles);
+}
 
 }  // namespace roomradar
