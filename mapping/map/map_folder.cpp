@@ -17,7 +17,7 @@
 #include "mapping/storage/atomic_folder.hpp"
 #include "mapping/storage/sha256.hpp"
 #include "mapping/surface/unknown/unknown_surface.hpp"
-#include "mapping/texture/surface_texture_file.hpp"
+#include "mapping/texture/surface_texture.hpp"
 #include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"

@@ -10,7 +10,7 @@
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/storage/sha256.hpp"
 #include "mapping/surface/unknown/unknown_surface.hpp"
-#include "mapping/texture/surface_texture_file.hpp"
+#include "mapping/texture/surface_texture.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/version.hpp"

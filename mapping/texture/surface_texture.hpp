@@ -1,9 +1,10 @@
 // surface_texture.hpp: texture of a map's surface: a colour atlas, and the texture coordinates of each
-// triangle.
+// triangle; reads and writes them.
 #pragma once
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <vector>
 
 #include "mapping/mesh/mesh_file.hpp"
@@ -32,5 +33,16 @@ bool fits(const SurfaceTexture& texture, const Mesh& mesh);
 /// Returns the mesh with texture coordinates and without colours. Vertices with several positions in the
 /// atlas are duplicated. The texture must fit the mesh.
 TexturedMesh textured_mesh(const Mesh& mesh, const SurfaceTexture& texture);
+
+/// Writes the atlas to `picture` (JPEG). Writes texture coordinates, size and fingerprint to `points`, a
+/// binary file with a checksum. Throws Error if a file cannot be written.
+void write_surface_texture(const SurfaceTexture& texture, const std::filesystem::path& picture,
+                           const std::filesystem::path& points);
+
+/// Reads files written by write_surface_texture(). The atlas is not decoded; only its size is checked. Throws
+/// Error naming the file and the fault if a file is missing, truncated, altered, or of another version. Sizes
+/// are checked before memory is allocated.
+SurfaceTexture read_surface_texture(const std::filesystem::path& picture,
+                                    const std::filesystem::path& points);
 
 }  // namespace roomradar

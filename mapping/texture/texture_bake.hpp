@@ -1,4 +1,4 @@
-// texture_bake.hpp: bakes a texture of a mesh from pictures of the room.
+// texture_bake.hpp: bakes a texture of a mesh from pictures of the room, and fills the gaps of its atlas.
 #pragma once
 #include <memory>
 #include <span>
@@ -6,6 +6,7 @@
 #include "mapping/texture/earlier_texture.hpp"
 #include "mapping/texture/surface_texture.hpp"
 #include "mapping/texture/texture_view.hpp"
+#include "mapping/types/image.hpp"
 #include "mapping/types/mesh.hpp"
 
 namespace roomradar {
@@ -38,5 +39,12 @@ struct TextureConfig {
 SurfaceTexture bake_texture(const Mesh& mesh, std::span<const TextureView> views,
                             std::span<const std::unique_ptr<const EarlierTexture>> earlier = {},
                             const TextureConfig& config = {});
+
+/// Fills the gaps of an atlas, so that neither interpolation nor compression shows its seams. Gives pixels
+/// without colour the mean of their nearest neighbours with colour: the picture is halved until all pixels
+/// have a colour, and the gaps are filled on the way back. A picture without any colour becomes grey.
+/// @param has_colour  255: the pixel has a colour; 0: the pixel is filled. Same size as the atlas
+/// Source: Gortler et al., The Lumigraph, SIGGRAPH 1996 (push-pull).
+void fill_gaps(ColourImage& atlas, const MaskImage& has_colour);
 
 }  // namespace roomradar

@@ -3,7 +3,7 @@
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/octree/static_map.hpp"
 #include "mapping/surface/unknown/unknown_surface.hpp"
-#include "mapping/texture/surface_texture_file.hpp"
+#include "mapping/texture/surface_texture.hpp"
 #include "mapping/types/codecs/jpeg.hpp"
 #include "mapping/types/trajectory.hpp"
 #include "tests/fuzz/fuzz_input.hpp"

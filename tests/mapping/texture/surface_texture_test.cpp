@@ -5,7 +5,6 @@
 
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/mesh/ply_file.hpp"
-#include "mapping/texture/surface_texture_file.hpp"
 #include "mapping/types/codecs/jpeg.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <memory>
 
-#include "mapping/texture/atlas_fill.hpp"
 #include "mapping/texture/exposure_gains.hpp"
 #include "mapping/texture/view_alignment.hpp"
 #include "mapping/texture/view_selection.hpp"
