@@ -12,11 +12,10 @@
 #include "mapping/map/map_folder.hpp"
 #include "mapping/odometry/odometry.hpp"
 #include "mapping/odometry/up_direction.hpp"
-#include "mapping/prescan_counts.hpp"
 #include "mapping/revision/ghosts.hpp"
-#include "mapping/scan_observer.hpp"
 #include "mapping/scan_parts.hpp"
 #include "mapping/surface/surface_extraction.hpp"
+#include "mapping/types/frame.hpp"
 #include "mapping/types/frame_source.hpp"
 #include "mapping/types/pose_origin.hpp"
 #include "mapping/types/system/stage_times.hpp"
@@ -51,6 +50,30 @@ struct FrameSpan {
   std::int64_t first = 0, last = 0;  ///< frame indices, both included
 };
 
+/// Frame counts, and the trajectory's error against recorded poses if there are any.
+struct PrescanCounts {
+  std::int64_t frames_read = 0;
+  std::int64_t frames_skipped = 0;  ///< unreadable
+  std::int64_t frames_tracked = 0;  ///< with a trusted pose
+  std::int64_t frames_fused = 0;
+  std::int64_t frames_lost = 0;  ///< readable, but without a trusted pose; not fused
+  std::int64_t keyframes = 0;
+  std::int64_t loops_found = 0;
+  std::int64_t restarts = 0;       ///< number of times that tracking restarted with corrected sensor times
+  std::int64_t recorded_used = 0;  ///< frames whose motion recorded poses constrained; see MotionPrior
+  std::int64_t recorded_contradicted = 0;  ///< frames whose depth contradicted the recorded motion
+  double recorded_sigma_m = 0.0;           ///< estimated noise of a recorded pose, see MotionPrior::sigma_m
+  std::int64_t ghost_voxels = 0;           ///< surface voxels removed by ghost removal
+  /// Frames of the interrupted pass (tracking or fusion) that were finished at the checkpoint and are not
+  /// processed again.
+  std::int64_t frames_resumed = 0;
+  bool stopped_for_memory = false;  ///< memory cap reached: part of the source is not in the map
+  SensorTiming timing;              ///< times of the sensor, estimated if the poses were tracked
+  std::string last_fault;           ///< reason why the last skipped frame was unreadable
+  /// Set if the poses were tracked and at least 3 tracked frames have recorded poses.
+  std::optional<TrajectoryError> trajectory_error;
+};
+
 struct PrescanResult {
   SavedMap map;                 ///< map.info.counts are set, too
   std::vector<Hole> holes;      ///< regions that the scan did not observe; largest first, outer borders last
@@ -65,6 +88,27 @@ struct PrescanResult {
 /// surface is extracted, and with "texture" before the texture is baked. While tracking, the note also states
 /// the surface area observed in total and in the last second.
 using PrescanProgress = std::function<void(const std::string& stage, const std::string& note)>;
+
+/// Follows the first pass of a prescan. The prescan's thread makes the calls, and their time adds to the
+/// frame's. The only way to change the scan is take_undo_s().
+class ScanObserver {
+ public:
+  ScanObserver() = default;
+  ScanObserver(const ScanObserver&) = delete;
+  ScanObserver& operator=(const ScanObserver&) = delete;
+  virtual ~ScanObserver() = default;
+
+  /// Called after each readable frame, with its tracking result and the state of the odometry after it.
+  /// @param times  stages "read" and "track" so far
+  virtual void after_frame(const Frame& frame, const Tracking& tracking, const Odometry& odometry,
+                           const StageTimes& times) = 0;
+
+  /// Called after after_frame(). Returns how many seconds at the end of the scan to undo, by the frames'
+  /// stamps; 0: none. To be tracked again, the camera must then return to its pose at that time.
+  virtual double take_undo_s() { return 0.0; }
+  /// Called when the frames from this index on have been removed from the scan.
+  virtual void forgot_frames(std::int64_t /*from_index*/) {}
+};
 
 class Checkpoints;
 class MapWriter;

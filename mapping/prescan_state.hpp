@@ -8,7 +8,7 @@
 #include "mapping/map/map_folder.hpp"
 #include "mapping/odometry/odometry.hpp"
 #include "mapping/odometry/up_direction.hpp"
-#include "mapping/prescan_counts.hpp"
+#include "mapping/prescan.hpp"
 #include "mapping/revision/ghost_removal.hpp"
 #include "mapping/scan_parts.hpp"
 #include "mapping/storage/checkpoints.hpp"

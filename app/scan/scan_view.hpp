@@ -22,7 +22,7 @@
 #include "app/scan/scan_channel.hpp"
 #include "mapping/coverage/observed_area.hpp"
 #include "mapping/odometry/up_direction.hpp"
-#include "mapping/scan_observer.hpp"
+#include "mapping/prescan.hpp"
 
 namespace roomradar {
 
