@@ -15,8 +15,7 @@
 #include "mapping/building/submap_join.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
-#include "mapping/types/system/folder_entries.hpp"
-#include "mapping/types/system/make_folder.hpp"
+#include "mapping/types/system/folders.hpp"
 
 namespace roomradar {
 namespace {

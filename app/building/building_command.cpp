@@ -14,7 +14,7 @@
 #include "app/cli/report.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/types/system/error.hpp"
-#include "mapping/types/system/folder_entries.hpp"
+#include "mapping/types/system/folders.hpp"
 #include "mapping/types/system/parallel_for.hpp"
 
 namespace roomradar {

@@ -23,7 +23,7 @@
 #include "mapping/surface/unknown/unknown_surface.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
-#include "mapping/types/system/make_folder.hpp"
+#include "mapping/types/system/folders.hpp"
 
 namespace roomradar {
 namespace {

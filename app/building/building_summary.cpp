@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mapping/types/system/classic_locale.hpp"
-#include "mapping/types/system/rounded.hpp"
+#include "mapping/types/system/format_number.hpp"
 
 namespace roomradar {
 namespace {

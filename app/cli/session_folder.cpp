@@ -18,9 +18,8 @@
 #include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
-#include "mapping/types/system/folder_entries.hpp"
+#include "mapping/types/system/folders.hpp"
 #include "mapping/types/system/format_number.hpp"
-#include "mapping/types/system/make_folder.hpp"
 
 namespace roomradar {
 namespace {

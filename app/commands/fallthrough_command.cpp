@@ -24,8 +24,7 @@
 #include "mapping/map/map_folder.hpp"
 #include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
-#include "mapping/types/system/folder_entries.hpp"
-#include "mapping/types/system/make_folder.hpp"
+#include "mapping/types/system/folders.hpp"
 #include "mapping/types/system/parallel_for.hpp"
 #include "radar/batch/passes_radar.hpp"
 

@@ -16,7 +16,7 @@
 #include "mapping/map/map_folder.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
-#include "mapping/types/system/make_folder.hpp"
+#include "mapping/types/system/folders.hpp"
 #include "mapping/types/system/parallel_for.hpp"
 
 namespace roomradar {

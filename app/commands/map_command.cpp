@@ -23,7 +23,7 @@
 #include "mapping/surface/unknown/unknown_surface.hpp"
 #include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
-#include "mapping/types/system/rounded.hpp"
+#include "mapping/types/system/format_number.hpp"
 
 namespace roomradar {
 namespace {

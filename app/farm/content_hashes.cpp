@@ -14,7 +14,7 @@
 #include "mapping/types/system/atomic_file.hpp"
 #include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
-#include "mapping/types/system/folder_entries.hpp"
+#include "mapping/types/system/folders.hpp"
 
 namespace roomradar {
 

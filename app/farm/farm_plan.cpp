@@ -8,7 +8,7 @@
 #include "app/farm/job_folder.hpp"
 #include "mapping/storage/sha256.hpp"
 #include "mapping/types/system/error.hpp"
-#include "mapping/types/system/make_folder.hpp"
+#include "mapping/types/system/folders.hpp"
 #include "mapping/types/system/version.hpp"
 
 namespace roomradar {

@@ -9,7 +9,7 @@
 
 #include "app/media/canvas.hpp"
 #include "mapping/types/system/classic_locale.hpp"
-#include "mapping/types/system/rounded.hpp"
+#include "mapping/types/system/format_number.hpp"
 
 namespace roomradar {
 namespace {

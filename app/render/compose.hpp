@@ -7,9 +7,9 @@
 #include "app/render/light_estimate.hpp"
 #include "app/render/object_layer.hpp"
 #include "app/render/occlusion.hpp"
+#include "mapping/types/frame.hpp"
 #include "mapping/types/image.hpp"
 #include "mapping/types/intrinsics.hpp"
-#include "mapping/types/posed_depth.hpp"
 
 namespace roomradar {
 

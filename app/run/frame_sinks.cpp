@@ -13,8 +13,8 @@
 #include "app/run/growing_file.hpp"
 #include "app/run/run_use.hpp"
 #include "app/session/session_fingerprint.hpp"
+#include "mapping/types/system/folders.hpp"
 #include "mapping/types/system/format_number.hpp"
-#include "mapping/types/system/make_folder.hpp"
 #include "mapping/types/trajectory.hpp"
 
 namespace roomradar {

@@ -7,7 +7,7 @@
 #include "app/cli/report.hpp"
 #include "mapping/map/level_surfaces.hpp"
 #include "mapping/map/map_info.hpp"
-#include "mapping/types/system/rounded.hpp"
+#include "mapping/types/system/format_number.hpp"
 
 namespace roomradar {
 namespace {

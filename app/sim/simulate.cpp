@@ -13,9 +13,8 @@
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
-#include "mapping/types/system/folder_entries.hpp"
+#include "mapping/types/system/folders.hpp"
 #include "mapping/types/system/format_number.hpp"
-#include "mapping/types/system/make_folder.hpp"
 #include "mapping/types/trajectory.hpp"
 
 namespace roomradar {

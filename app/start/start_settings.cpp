@@ -7,7 +7,7 @@
 #include "mapping/types/system/atomic_file.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
-#include "mapping/types/system/make_folder.hpp"
+#include "mapping/types/system/folders.hpp"
 
 namespace roomradar {
 namespace {

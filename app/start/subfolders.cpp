@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "mapping/types/system/folder_entries.hpp"
+#include "mapping/types/system/folders.hpp"
 
 namespace roomradar {
 

@@ -8,8 +8,8 @@
 #include "dynamic/foreground/pixel_blocks.hpp"
 #include "dynamic/foreground/unmapped_space.hpp"
 #include "mapping/types/depth_noise.hpp"
+#include "mapping/types/frame.hpp"
 #include "mapping/types/image.hpp"
-#include "mapping/types/posed_depth.hpp"
 
 namespace roomradar {
 

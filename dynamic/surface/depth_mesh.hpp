@@ -6,9 +6,9 @@
 
 #include "dynamic/surface/surface_policy.hpp"
 #include "mapping/types/depth_noise.hpp"
+#include "mapping/types/frame.hpp"
 #include "mapping/types/image.hpp"
 #include "mapping/types/mesh.hpp"
-#include "mapping/types/posed_depth.hpp"
 
 namespace roomradar {
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "dynamic/surface/pixel_bits.hpp"
+#include "mapping/types/frame.hpp"
 #include "mapping/types/image.hpp"
-#include "mapping/types/posed_depth.hpp"
 
 namespace roomradar {
 

@@ -18,7 +18,6 @@
 #include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/format_number.hpp"
-#include "mapping/types/system/rounded.hpp"
 
 namespace roomradar {
 namespace {

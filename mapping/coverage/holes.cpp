@@ -9,7 +9,7 @@
 #include "mapping/mesh/mesh_borders.hpp"
 #include "mapping/octree/static_map.hpp"
 #include "mapping/types/system/classic_locale.hpp"
-#include "mapping/types/system/rounded.hpp"
+#include "mapping/types/system/format_number.hpp"
 
 namespace roomradar {
 

@@ -6,7 +6,7 @@
 
 #include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
-#include "mapping/types/system/folder_entries.hpp"
+#include "mapping/types/system/folders.hpp"
 
 namespace roomradar {
 namespace {

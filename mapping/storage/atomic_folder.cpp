@@ -16,7 +16,7 @@
 
 #include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
-#include "mapping/types/system/make_folder.hpp"
+#include "mapping/types/system/folders.hpp"
 
 namespace roomradar {
 namespace {

@@ -23,8 +23,7 @@
 #include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
-#include "mapping/types/system/folder_entries.hpp"
-#include "mapping/types/system/make_folder.hpp"
+#include "mapping/types/system/folders.hpp"
 #include "mapping/types/system/version.hpp"
 
 namespace roomradar {

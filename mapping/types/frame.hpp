@@ -56,4 +56,11 @@ inline void copy_all_but_images(const Frame& from, Frame& to) {
   to.down_camera = from.down_camera;
 }
 
+/// A depth image, its camera and its pose. Refers to all three, which must outlive it.
+struct PosedDepth {
+  const DepthImage& depth_m;  ///< height x width, metres along the optical axis; 0: no measurement
+  const Intrinsics& camera;   ///< of the image's size
+  const Eigen::Isometry3d& T_world_camera;
+};
+
 }  // namespace roomradar

@@ -9,7 +9,7 @@
 #include "app/sources/containers/mcap.hpp"
 #include "app/sources/containers/sqlite_file.hpp"
 #include "mapping/types/system/error.hpp"
-#include "mapping/types/system/folder_entries.hpp"
+#include "mapping/types/system/folders.hpp"
 
 namespace roomradar {
 namespace {

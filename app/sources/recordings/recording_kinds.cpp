@@ -13,7 +13,7 @@
 #include "app/sources/datasets/dataset_readers.hpp"
 #include "app/sources/datasets/numbered_files.hpp"
 #include "mapping/types/system/error.hpp"
-#include "mapping/types/system/folder_entries.hpp"
+#include "mapping/types/system/folders.hpp"
 
 namespace roomradar {
 namespace {

@@ -15,9 +15,8 @@
 #include "app/sources/formats/parse_numbers.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
-#include "mapping/types/system/folder_entries.hpp"
+#include "mapping/types/system/folders.hpp"
 #include "mapping/types/system/format_number.hpp"
-#include "mapping/types/system/make_folder.hpp"
 
 namespace roomradar {
 namespace {

@@ -8,7 +8,7 @@
 #include "app/sources/formats/scratch_folder.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
-#include "mapping/types/system/make_folder.hpp"
+#include "mapping/types/system/folders.hpp"
 
 namespace roomradar {
 namespace fs = std::filesystem;

@@ -1,8 +1,10 @@
-// format_number.hpp: locale-independent formatting of numbers.
+// format_number.hpp: locale-independent formatting of numbers, and rounding that never prints "-0.00".
 #pragma once
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <string>
 
@@ -48,6 +50,19 @@ inline std::string format_readable(double value, int digits) {
 inline std::string format_frame_number(std::int64_t number) {
   std::string text = std::to_string(number);
   return text.insert(0, 6 - std::min<std::size_t>(text.size(), 6), '0');
+}
+
+/// Returns the value; 0 for -0.
+inline double without_minus_zero(double value) { return value + 0.0; }
+
+/// Returns the value rounded to a number of decimals, 0 instead of -0.
+inline double rounded(double value, int decimals) {
+  const double scale = std::pow(10.0, decimals);
+  return without_minus_zero(std::round(scale * value) / scale);
+}
+
+inline Eigen::Vector3d rounded(const Eigen::Vector3d& value, int decimals) {
+  return value.unaryExpr([decimals](double coordinate) { return rounded(coordinate, decimals); });
 }
 
 }  // namespace roomradar

@@ -10,7 +10,7 @@
 #include "app/sources/formats/image_file.hpp"
 #include "app/sources/recordings/folder_source.hpp"
 #include "app/sources/recordings/recording_writer.hpp"
-#include "mapping/types/system/folder_entries.hpp"
+#include "mapping/types/system/folders.hpp"
 #include "tests/app/sources/sources_support.hpp"
 #include "tests/support/litter.hpp"
 

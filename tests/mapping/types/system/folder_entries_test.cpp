@@ -1,5 +1,5 @@
 // folder_entries_test.cpp: litter of desktops in folders, and zeros in messages.
-#include "mapping/types/system/folder_entries.hpp"
+#include "mapping/types/system/folders.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// folder_entries.hpp: lists folders without the files that desktops and file systems leave in them.
+// folders.hpp: creates folders, with the true cause if that fails; lists folders without the files that
+// desktops and file systems leave in them.
 #pragma once
 #include <filesystem>
 #include <string_view>
@@ -6,6 +7,12 @@
 #include <vector>
 
 namespace roomradar {
+
+/// Creates the folder and its parents; does nothing if it exists. Throws Error naming the folder and the
+/// cause. The cause is the nearest existing parent folder if that is not writable, or is in a file system
+/// that accepts no new files, such as /proc. For /proc, the system's own message would be a misleading "No
+/// such file or directory".
+void make_folder(const std::filesystem::path& folder);
 
 /// Returns true for the name of a file or folder that a desktop, a file system or a network share adds to
 /// folders by itself: "._NAME", ".DS_Store", "__MACOSX", ".directory", "Thumbs.db", "desktop.ini",

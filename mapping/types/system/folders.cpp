@@ -1,8 +1,13 @@
-// folder_entries.cpp: the names of litter, and lists without it.
-#include "mapping/types/system/folder_entries.hpp"
+// folders.cpp: names the nearest existing folder as the cause of a failure; the names of litter, and lists
+// without it.
+#include "mapping/types/system/folders.hpp"
 
 #include <algorithm>
 #include <array>
+#include <system_error>
+
+#include "mapping/types/system/classic_locale.hpp"
+#include "mapping/types/system/error.hpp"
 
 namespace roomradar {
 namespace {
@@ -25,6 +30,24 @@ constexpr std::array<std::string_view, 32> kLitter = {
 constexpr std::array<std::string_view, 5> kLitterBegins = {"._", ".Trash", ".nfs", ".fuse_hidden", ".~lock."};
 
 }  // namespace
+
+void make_folder(const std::filesystem::path& folder) {
+  namespace fs = std::filesystem;
+  std::error_code fault, unused;
+  fs::create_directories(folder, fault);
+  if (!fault) return;
+  fs::path above = folder.has_parent_path() ? folder.parent_path() : ".";
+  while (!fs::exists(above, unused) && above.has_parent_path() && above != above.parent_path())
+    above = above.parent_path();
+  std::string reason = system_reason(fault);
+  const bool is_folder = fs::is_directory(above, unused);
+  if (fault == std::errc::no_such_file_or_directory && is_folder)
+    reason = above.string() + " cannot hold files; choose another place";
+  else if ((fault == std::errc::permission_denied || fault == std::errc::operation_not_permitted) &&
+           is_folder)
+    reason = above.string() + " is not writable";
+  throw Error(folder.string() + ": the folder cannot be made: " + reason);
+}
 
 bool is_litter(std::string_view name) {
   return std::find(kLitter.begin(), kLitter.end(), name) != kLitter.end() ||
