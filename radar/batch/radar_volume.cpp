@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "radar/geometry/frame_along.hpp"
-#include "radar/geometry/pixel_grid.hpp"
 
 namespace roomradar {
 namespace {

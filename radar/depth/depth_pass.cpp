@@ -10,8 +10,8 @@
 
 #include "mapping/types/system/config_check.hpp"
 #include "mapping/types/validity.hpp"
-#include "radar/gl/draw_positions.hpp"
 #include "radar/gl/gl_program.hpp"
+#include "radar/gl/gpu_mesh.hpp"
 
 namespace roomradar {
 namespace {

@@ -11,7 +11,6 @@
 #include "radar/exact/radar.hpp"
 #include "radar/exact/radar_query.hpp"
 #include "radar/exact/scene_in_frame.hpp"
-#include "radar/exact/scene_queue.hpp"
 #include "radar/geometry/contact.hpp"
 #include "radar/geometry/radar_scene.hpp"
 

@@ -5,8 +5,8 @@
 #include <bit>
 
 #include "radar/exact/turned_bounds.hpp"
+#include "radar/geometry/frame_along.hpp"
 #include "radar/geometry/infinity.hpp"
-#include "radar/geometry/pixel_grid.hpp"
 
 namespace roomradar {
 namespace {

@@ -213,4 +213,11 @@ Eigen::Matrix4d clip_from_local(const MeshInstance& instance, const Eigen::Matri
   return clip_from_world * T_world_local.matrix();
 }
 
+std::size_t draw_positions(const MeshInstance& instance, const Eigen::Matrix4d& clip_from_world) {
+  const Eigen::Matrix4d clip = clip_from_local(instance, clip_from_world);
+  const Eigen::Matrix4f clip_float = clip.cast<float>();
+  glUniformMatrix4fv(0, 1, GL_FALSE, clip_float.data());
+  return instance.mesh->draw(clip);
+}
+
 }  // namespace roomradar

@@ -1,5 +1,7 @@
-// gpu_mesh.hpp: a triangle mesh in OpenGL buffers, with a CPU copy for exact queries.
+// gpu_mesh.hpp: a triangle mesh in OpenGL buffers, with a CPU copy for exact queries; draws it, also with
+// positions only.
 #pragma once
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
 #include <cstddef>
@@ -141,5 +143,17 @@ struct MeshInstance {
 /// Returns the matrix from the instance's local points (relative to its mesh's origin) to clip space.
 /// Composed in double.
 Eigen::Matrix4d clip_from_local(const MeshInstance& instance, const Eigen::Matrix4d& clip_from_world);
+
+/// Vertex shader of programs used with draw_positions(). Attribute 0 is the local position; uniform 0 is the
+/// matrix from local to clip space.
+inline constexpr const char* kPositionShader = R"(#version 450 core
+layout(location = 0) in vec3 p_local;
+layout(location = 0) uniform mat4 clip_from_local;
+void main() { gl_Position = clip_from_local * vec4(p_local, 1.0); }
+)";
+
+/// Draws the instance with the current program. Its mesh must not be null.
+/// @return number of triangles passed to the renderer
+std::size_t draw_positions(const MeshInstance& instance, const Eigen::Matrix4d& clip_from_world);
 
 }  // namespace roomradar
