@@ -16,8 +16,7 @@
 #include "mapping/types/system/counter_random.hpp"
 #include "tests/bench/bench_program.hpp"
 #include "tests/bench/bench_times.hpp"
-#include "tests/bench/dynamic_bench_foreground.hpp"
-#include "tests/bench/dynamic_bench_mesh.hpp"
+#include "tests/bench/dynamic_bench.hpp"
 #include "tests/dynamic/foreground/foreground_judge.hpp"
 
 namespace roomradar::test {

@@ -1,6 +1,6 @@
 // dynamic_bench_foreground.cpp: accuracy of the foreground on simulated movers, and in recordings without
 // motion.
-#include "tests/bench/dynamic_bench_foreground.hpp"
+#include "tests/bench/dynamic_bench.hpp"
 
 #include <algorithm>
 #include <array>

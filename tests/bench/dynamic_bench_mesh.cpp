@@ -1,7 +1,7 @@
 // dynamic_bench_mesh.cpp: the mesh of the dynamic foreground compared with the mesh of every pixel and that
 // of the whole frame. Scenes, seeds and frames are fixed: changing them breaks the comparison with earlier
 // results.
-#include "tests/bench/dynamic_bench_mesh.hpp"
+#include "tests/bench/dynamic_bench.hpp"
 
 #include <cmath>
 #include <random>

@@ -22,24 +22,28 @@
 //     shown       pixels shown though a real surface is 5 cm or more before them
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/media/picture_file.hpp"
 #include "app/session/picture_composer.hpp"
 #include "app/sim/room/room_mesh.hpp"
+#include "app/sim/sensor/kinect_depth.hpp"
 #include "bench_program.hpp"
 #include "bench_times.hpp"
-#include "light_bench_pictures.hpp"
 #include "light_bench_scenes.hpp"
 #include "mapping/map/map_folder.hpp"
+#include "mapping/types/image.hpp"
 #include "mapping/types/system/counter_random.hpp"
 #include "radar/exact/ray_hit.hpp"
 #include "where_bench_rooms.hpp"
@@ -55,6 +59,67 @@ struct Settings {
   std::string only, json;
   bool fixed = false;
 };
+
+/// Returns the sum of the channels' absolute differences.
+int difference(const Rgb& a, const Rgb& b) {
+  return std::abs(int{a.r} - int{b.r}) + std::abs(int{a.g} - int{b.g}) + std::abs(int{a.b} - int{b.b});
+}
+
+/// Returns the indices of pixels whose neighbourhood shows only the object.
+std::vector<std::size_t> object_pixels(const ExactView& exact, std::size_t object_begin) {
+  std::vector<std::size_t> pixels;
+  const auto is_object = [&](int x, int y) { return exact.solid.at(x, y) >= static_cast<int>(object_begin); };
+  for (int y = 1; y + 1 < exact.solid.height; ++y)
+    for (int x = 1; x + 1 < exact.solid.width; ++x) {
+      bool whole = true;
+      for (int v = -1; v <= 1 && whole; ++v)
+        for (int u = -1; u <= 1 && whole; ++u) whole = is_object(x + u, y + v);
+      if (whole) pixels.push_back(exact.solid.index(x, y));
+    }
+  return pixels;
+}
+
+/// Returns the mean difference of two pictures in some pixels, per channel.
+double mean_difference(const ColourImage& a, const ColourImage& b, const std::vector<std::size_t>& pixels) {
+  double sum = 0.0;
+  for (const std::size_t i : pixels) sum += difference(a.pixels[i], b.pixels[i]);
+  return pixels.empty() ? 0.0 : sum / (3.0 * static_cast<double>(pixels.size()));
+}
+
+/// Returns the mean absolute change of tiles of 16 x 16 pixels, weighted by the given pixels in them.
+double tile_change(const ColourImage& a, const ColourImage& b, const std::vector<std::size_t>& pixels) {
+  constexpr std::size_t kTile_px = 16;
+  std::map<std::size_t, std::pair<double, double>> tiles;  // sum of changes, number of pixels
+  for (const std::size_t i : pixels) {
+    const auto width = static_cast<std::size_t>(a.width);
+    auto& [sum, count] = tiles[i / width / kTile_px * width + i % width / kTile_px];
+    const Rgb &before = a.pixels[i], &after = b.pixels[i];
+    sum += (int{after.r} + int{after.g} + int{after.b} - int{before.r} - int{before.g} - int{before.b}) / 3.0;
+    count += 1.0;
+  }
+  double changed = 0.0;
+  for (const auto& [tile, of] : tiles) changed += std::abs(of.first);
+  return pixels.empty() ? 0.0 : changed / static_cast<double>(pixels.size());
+}
+
+/// Returns the standard deviation of the noise in pixels whose neighbourhood is the object's, from the median
+/// of second differences.
+double noise_in(const ColourImage& picture, const std::vector<std::size_t>& pixels) {
+  constexpr double kOfDeviation = 0.6745 * 6.0 * 3.0;
+  std::vector<int> rough;
+  for (const std::size_t i : pixels) {
+    const auto across = [](const Rgb* of) {
+      const auto sum = [](const Rgb& pixel) { return int{pixel.r} + int{pixel.g} + int{pixel.b}; };
+      return sum(of[-1]) - 2 * sum(of[0]) + sum(of[1]);
+    };
+    const Rgb* at = picture.pixels.data() + i;
+    rough.push_back(std::abs(across(at - picture.width) - 2 * across(at) + across(at + picture.width)));
+  }
+  if (rough.empty()) return 0.0;
+  const auto middle = rough.begin() + static_cast<std::ptrdiff_t>(rough.size() / 2);
+  std::nth_element(rough.begin(), middle, rough.end());
+  return *middle / kOfDeviation;
+}
 
 constexpr double kHeight_m = 0.27;
 

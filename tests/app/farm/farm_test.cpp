@@ -15,7 +15,6 @@
 #include "app/farm/job_folder.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "tests/support/error_of.hpp"
-#include "tests/support/litter.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace roomradar::farm_test {

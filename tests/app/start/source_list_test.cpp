@@ -8,7 +8,6 @@
 
 #include "app/sim/sensor/sim_options.hpp"
 #include "app/sim/simulate.hpp"
-#include "tests/support/litter.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace roomradar::test::source_list_test {

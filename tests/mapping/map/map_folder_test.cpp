@@ -28,7 +28,6 @@
 #include "mapping/types/system/error.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/exact_depth.hpp"
-#include "tests/support/litter.hpp"
 #include "tests/support/map_content.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -10,7 +10,6 @@
 
 #include "mapping/storage/checkpoints.hpp"
 #include "tests/support/error_of.hpp"
-#include "tests/support/litter.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace roomradar::checkpoints_test {

@@ -9,7 +9,7 @@
 #include "app/sources/formats/image_file.hpp"
 #include "app/sources/recordings/folder_source.hpp"
 #include "tests/app/sources/sources_support.hpp"
-#include "tests/support/litter.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace roomradar::numbered_recordings_test {
 namespace {

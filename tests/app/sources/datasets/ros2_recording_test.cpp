@@ -12,7 +12,7 @@
 #include "app/sources/recordings/folder_source.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "tests/app/sources/sources_support.hpp"
-#include "tests/support/litter.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace roomradar::ros2_recording_test {
 namespace {

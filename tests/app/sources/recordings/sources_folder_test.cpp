@@ -12,7 +12,7 @@
 #include "app/sources/recordings/recording_writer.hpp"
 #include "mapping/types/system/folders.hpp"
 #include "tests/app/sources/sources_support.hpp"
-#include "tests/support/litter.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace roomradar::sources_folder_test {
 namespace {
