@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
                       .map_info = run,
                       .map_verify = run,
                       .map_export = run,
+                      .map_objects = run,
                       .map_merge = run,
                       .map_diff = run,
                       .check = run,

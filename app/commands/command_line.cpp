@@ -145,13 +145,16 @@ void add_command_of_both(CLI::App& map, const char* name, const char* descriptio
 
 void add_map_commands(CLI::App& app, Parsing& parsing) {
   const Commands& here = parsing.here;
-  CLI::App& map = *app.add_subcommand("map", "describe, verify, export, merge or compare saved maps");
+  CLI::App& map = *app.add_subcommand(
+      "map", "describe, verify, export, merge or compare saved maps; the objects in them");
   map.require_subcommand(1);
   add_command_of_both(map, "info", "describe a map", parsing, here.map_info, here.building_info);
   add_command_of_both(map, "verify", "check every file against its checksum; exit status 1 if one differs",
                       parsing, here.map_verify, here.building_verify);
   add_command_of_both(map, "export", "write the octree or the mesh for other programs", parsing,
                       here.map_export, here.building_export);
+  add_command(map, "objects", "list, remove or rename the virtual objects that stay in a room", parsing,
+              here.map_objects);
   add_command(
       map, "merge",
       "merge two overlapping maps of one room; B is registered to A by common views and by surfaces,\n"

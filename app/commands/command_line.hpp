@@ -25,6 +25,7 @@ struct Commands {
   int (*map_info)(const MapInfoOptions& options) = nullptr;
   int (*map_verify)(const MapVerifyOptions& options) = nullptr;
   int (*map_export)(const MapExportOptions& options) = nullptr;
+  int (*map_objects)(const MapObjectsOptions& options) = nullptr;
   int (*map_merge)(const MapMergeOptions& options) = nullptr;
   int (*map_diff)(const MapDiffOptions& options) = nullptr;
   int (*check)(const CheckOptions& options) = nullptr;

@@ -31,8 +31,8 @@ int run(const PrescanOptions& options);
 /// plays in it as the user asks. Returns the exit status of the last part.
 int run(const RunOptions& options);
 
-// roomradar map info|verify|export: describes, checks and exports a saved map. Each function returns the exit
-// status, and throws Error if a file cannot be read or written.
+// roomradar map info|verify|export|objects: describes, checks and exports a saved map. Each function returns
+// the exit status, and throws Error if a file cannot be read or written.
 
 /// Prints the map's properties.
 int run(const MapInfoOptions& options);
@@ -40,6 +40,9 @@ int run(const MapInfoOptions& options);
 int run(const MapVerifyOptions& options);
 /// Writes the octree, the mesh or the frontier of unknown space to a file.
 int run(const MapExportOptions& options);
+
+/// Lists, removes or renames the objects that stay in the room. Throws Error if there is no object of a name.
+int run(const MapObjectsOptions& options);
 
 // roomradar map merge|diff: merges or compares two maps of one room. Both functions return the exit status 0,
 // and throw Error if a file cannot be read or written, or if the maps cannot be registered reliably.

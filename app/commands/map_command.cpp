@@ -13,10 +13,13 @@
 
 #include "app/cli/report.hpp"
 #include "app/cli/shell_line.hpp"
+#include "app/objects/kept_objects.hpp"
 #include "app/page/room_page.hpp"
+#include "app/session/script/script.hpp"
 #include "app/sources/recordings/recording_kinds.hpp"
 #include "mapping/map/level_surfaces.hpp"
 #include "mapping/map/map_export.hpp"
+#include "mapping/map/map_files.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/map/map_info.hpp"
 #include "mapping/mesh/mesh_file.hpp"
@@ -114,6 +117,39 @@ int run(const MapExportOptions& options) {
     export_map(options.map, options.path);
   }
   std::printf("%s written\n", options.path.c_str());
+  return 0;
+}
+
+int run(const MapObjectsOptions& options) {
+  require_no_recording(options.map);
+  (void)load_map_info(options.map);
+  const std::filesystem::path folder = std::filesystem::path(options.map) / kMapObjectsFolder;
+  std::vector<KeptObject> objects = read_kept_objects(folder);
+  const auto named = [&](const std::string& name) {
+    return std::find_if(objects.begin(), objects.end(),
+                        [&](const KeptObject& object) { return object.name == name; });
+  };
+  if (options.action != "list") {
+    const auto found = named(options.names.front());
+    if (found == objects.end())
+      throw Error(options.map + ": no object in it has the name " + options.names.front());
+    if (options.action == "remove") {
+      objects.erase(found);
+    } else {
+      require_object_name(options.names[1]);
+      if (named(options.names[1]) != objects.end())
+        throw Error(options.map + ": another object has the name " + options.names[1]);
+      found->name = options.names[1];
+    }
+    write_kept_objects(folder, objects);
+    delete_unused_models(folder);
+  }
+  for (const KeptObject& object : objects) {  // as lines of a script
+    const StandObject stand{object.name, object.T_world_object.translation(),
+                            Eigen::Quaterniond(object.T_world_object.linear())};
+    std::printf("%s\n", to_line({.action = stand, .frame = 0}).c_str());
+  }
+  if (objects.empty()) std::printf("%s: no objects stay in it\n", options.map.c_str());
   return 0;
 }
 

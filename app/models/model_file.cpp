@@ -452,11 +452,15 @@ Model read_model(const std::filesystem::path& path, std::optional<UpAxis> up, Mo
   return model;
 }
 
-void write_model_copy(const Model& model, const std::filesystem::path& path) {
+std::string model_copy(const Model& model) {
   ByteWriter writer;
   writer.raw(kCopyHead.data(), kCopyHead.size());
   writer(model);
-  write_bytes(path, writer.bytes);
+  return std::move(writer.bytes);
+}
+
+void write_model_copy(const Model& model, const std::filesystem::path& path) {
+  write_bytes(path, model_copy(model));
 }
 
 }  // namespace roomradar

@@ -48,10 +48,12 @@ enum class ModelOrigin {
 Model read_model(const std::filesystem::path& path, std::optional<UpAxis> up = std::nullopt,
                  ModelOrigin origin = ModelOrigin::kNear);
 
-/// Extension of the files that write_model_copy() writes.
+/// Extension of files with a model_copy().
 inline constexpr const char* kModelCopyExtension = ".model";
-/// Writes a model with its textures, for recorded sessions. read_model() restores it exactly, without its
-/// notes, and ignores `up` and `origin` for such a file. Throws Error if the file cannot be written.
+/// Returns the content of a file with the model and its textures, for recorded sessions and kept objects.
+/// read_model() restores the model exactly, without its notes, and ignores `up` and `origin` for such a file.
+std::string model_copy(const Model& model);
+/// Writes a model_copy(). Throws Error if the file cannot be written.
 void write_model_copy(const Model& model, const std::filesystem::path& path);
 
 }  // namespace roomradar

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <filesystem>
 
 #include "app/objects/teapot.hpp"
 #include "mapping/types/system/error.hpp"
@@ -73,7 +74,8 @@ Mesh object_mesh(const std::string& name_or_path, double size_m) {
 }
 
 void require_sensible_size(const Model& model, const ObjectSource& source, const SizeCheck& check) {
-  if (source.size_m || source.mesh == "teapot") return;
+  const bool is_copy = std::filesystem::path(source.mesh).extension() == kModelCopyExtension;  // has its size
+  if (source.size_m || source.mesh == "teapot" || is_copy) return;
   const double longest_m = static_cast<double>(longest_side_m(model.mesh));
   const double most_m = check.room_m > 0.0 ? std::min(kLargest_m, kPartOfRoom * check.room_m) : kLargest_m;
   if (longest_m >= kSmallest_m && longest_m <= most_m) return;

@@ -1,6 +1,8 @@
 // frame_sinks.cpp: one class per output, in the order in which a frame is written.
 #include "app/run/frame_sinks.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -9,10 +11,12 @@
 
 #include "app/media/picture_file.hpp"
 #include "app/media/video_writer.hpp"
+#include "app/objects/kept_objects.hpp"
 #include "app/run/frame_stream.hpp"
 #include "app/run/growing_file.hpp"
 #include "app/run/run_use.hpp"
 #include "app/session/session_fingerprint.hpp"
+#include "mapping/types/system/error.hpp"
 #include "mapping/types/system/folders.hpp"
 #include "mapping/types/system/format_number.hpp"
 #include "mapping/types/trajectory.hpp"
@@ -163,6 +167,27 @@ std::unique_ptr<FrameSink> opened_if(bool is_requested, const RunOptions& option
   return is_requested ? std::make_unique<Sink>(options) : nullptr;
 }
 
+class KeptObjectsSink : public FrameSink {
+ public:
+  KeptObjectsSink(const std::filesystem::path& folder, const Session& session)
+      : keeper_(folder), session_(session) {}
+
+  void write(const RunFrame& frame) override {
+    try {
+      keeper_.keep(frame.session.objects());
+    } catch (const Error& fault) {  // tried again later; finish() throws if it still fails
+      if (!std::exchange(has_complained_, true)) std::fprintf(stderr, "roomradar: %s\n", fault.what());
+    }
+  }
+
+  void finish(RunEnd /*end*/) override { keeper_.finish(session_.objects()); }
+
+ private:
+  ObjectKeeper keeper_;
+  const Session& session_;
+  bool has_complained_ = false;
+};
+
 }  // namespace
 
 std::unique_ptr<FrameSink> fingerprint_sink(SessionRecorder* recorder, std::optional<ReplayCheck> check) {
@@ -183,6 +208,19 @@ std::unique_ptr<FrameSink> stream_sink(const RunOptions& options) {
 }
 std::unique_ptr<FrameSink> picture_sink(const RunOptions& options) {
   return opened_if<PictureSink>(!options.pictures.empty(), options);
+}
+
+std::unique_ptr<FrameSink> kept_objects_sink(const std::filesystem::path& folder, const Session& session) {
+  if (folder.empty()) return nullptr;
+  std::error_code fault;
+  const std::filesystem::path existing =
+      std::filesystem::exists(folder, fault) ? folder : folder.parent_path();
+  if (!existing.empty() && access(existing.c_str(), W_OK) != 0) {
+    std::fprintf(stderr, "roomradar: %s: cannot be written, so objects are not kept in the room\n",
+                 existing.c_str());
+    return nullptr;
+  }
+  return std::make_unique<KeptObjectsSink>(folder, session);
 }
 
 }  // namespace roomradar

@@ -2,6 +2,7 @@
 // of a recorded session, comparison with a recorded session.
 #pragma once
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -66,5 +67,10 @@ std::unique_ptr<FrameSink> trajectory_sink(const RunOptions& options);
 std::unique_ptr<FrameSink> stream_sink(const RunOptions& options);
 /// --pictures: every n-th picture as a file. The folder is created at once.
 std::unique_ptr<FrameSink> picture_sink(const RunOptions& options);
+/// Objects that stay in the room: written every 2 s and at the end. Null, with a message, if the folder
+/// cannot be written.
+/// @param folder   empty: objects are not kept
+/// @param session  must outlive the sink
+std::unique_ptr<FrameSink> kept_objects_sink(const std::filesystem::path& folder, const Session& session);
 
 }  // namespace roomradar

@@ -15,6 +15,7 @@
 #include "app/cli/open_source.hpp"
 #include "app/cli/options/object_options.hpp"
 #include "app/cli/options/run_options.hpp"
+#include "app/objects/kept_objects.hpp"
 #include "app/objects/object_file.hpp"
 #include "app/objects/object_model.hpp"
 #include "app/quality/quality_json.hpp"
@@ -23,6 +24,7 @@
 #include "app/session/script/session_events.hpp"
 #include "app/session/tiles/tile_window.hpp"
 #include "mapping/building/building_map.hpp"
+#include "mapping/map/map_files.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/map/map_writer.hpp"
 #include "mapping/odometry/up_direction.hpp"
@@ -49,18 +51,49 @@ std::string free_name(const Script& script, const ObjectOption& object) {
   return name;
 }
 
-/// Returns a script that adds the objects and drops each of them. An object is dropped from 5 cm above its
-/// given point, or above a level surface in view if no point is given. A single object is named kOnlyObject.
-/// Several objects are named after their files.
-Script drop_objects(const std::vector<ObjectOption>& objects) {
-  Script script;
+/// Adds events that add the objects and drop each of them. An object is dropped from 5 cm above its given
+/// point, or above a level surface in view if no point is given. A single object is named kOnlyObject unless
+/// an object of the script has that name; others are named after their files.
+void drop_objects(const std::vector<ObjectOption>& objects, Script& script) {
   for (const ObjectOption& object : objects) {
-    const std::string name = objects.size() == 1 ? kOnlyObject : free_name(script, object);
+    const bool is_only = objects.size() == 1 && !is_taken(script, kOnlyObject);
+    const std::string name = is_only ? kOnlyObject : free_name(script, object);
     DropObject drop{.name = name, .position_world = object.at_world};
     if (object.at_world) drop.height_m = kDropHeight_m;
     script.events.push_back({.action = AddObject{name, object.source, object.material}, .frame = 0});
     script.events.push_back({.action = drop, .frame = 0});
   }
+}
+
+// ---- the objects that stay in the room ----
+
+/// Returns the folder in which the run keeps its objects; empty: they are not kept.
+std::filesystem::path objects_folder_of(const RunOptions& options) {
+  if (options.kept_objects == "none" || is_session_folder(options.source)) return {};
+  if (options.kept_objects != "keep") return options.kept_objects;
+  if (is_building(options.map)) return {};
+  return std::filesystem::path(options.map) / kMapObjectsFolder;
+}
+
+/// Returns events that put the kept objects where they stood. Leaves out those whose name an object of
+/// `given` has.
+Script stand_objects(const std::filesystem::path& folder, const Script& given) {
+  Script script;
+  std::string names, replaced;
+  for (const KeptObject& object : read_kept_objects(folder)) {
+    std::string& list = is_taken(given, object.name) ? replaced : names;
+    list += (list.empty() ? "" : ", ") + object.name;
+    if (&list == &replaced) continue;
+    script.events.push_back(
+        {.action = AddObject{object.name, {.mesh = (folder / object.model).string()}, object.material},
+         .frame = 0});
+    script.events.push_back({.action = StandObject{object.name, object.T_world_object.translation(),
+                                                   Eigen::Quaterniond(object.T_world_object.linear())},
+                             .frame = 0});
+  }
+  if (!names.empty()) std::fprintf(stderr, "objects kept in the room: %s\n", names.c_str());
+  if (!replaced.empty())
+    std::fprintf(stderr, "replaced by the script's objects of the same name: %s\n", replaced.c_str());
   return script;
 }
 
@@ -139,6 +172,7 @@ nlohmann::json settings_of(const RunOptions& options) {
                              {"poses", to_string(options.poses)},
                              {"object", object_texts(options)},
                              {"script", options.script},
+                             {"objects", options.kept_objects},
                              {"surfaces", to_string(options.surfaces)},
                              {"unknown", options.unknown_is_solid ? "solid" : "free"},
                              {"at_end", to_string(options.at_end)},
@@ -169,10 +203,20 @@ void say_what_waits(const Script& script, const std::string& path) {
   }
 }
 
-Script script_of(const RunOptions& options) {
-  if (options.script.empty()) return drop_objects(options.objects);
-  Script script =
-      is_session_events(options.script) ? read_session_events(options.script) : read_script(options.script);
+/// Returns the given script, or one that drops the given objects; before it, the events of the objects that
+/// stay in the room.
+/// @param kept  folder of these objects; empty: none
+Script script_of(const RunOptions& options, const std::filesystem::path& kept) {
+  Script script;
+  if (!options.script.empty())
+    script =
+        is_session_events(options.script) ? read_session_events(options.script) : read_script(options.script);
+  if (!kept.empty()) {
+    const Script standing = stand_objects(kept, script);
+    script.events.insert(script.events.begin(), standing.events.begin(), standing.events.end());
+  }
+  const bool is_default = options.given_objects.texts.empty();  // a teapot, for a room without objects
+  if (options.script.empty() && (script.events.empty() || !is_default)) drop_objects(options.objects, script);
   say_what_waits(script, options.script);
   for (ScriptEvent& event : script.events)
     if (auto* set = std::get_if<SetQuality>(&event.action)) set_fields(set->quality, options.fixed);
@@ -413,7 +457,8 @@ std::unique_ptr<OpenedRun> open_run(const RunOptions& options, UiChannel* link) 
   if (options.stream != "-") require_writable(options.stream);
   require_outside_maps(options.video);
   require_contents_outside_maps(options.pictures);
-  run.script = script_of(options);
+  const std::filesystem::path kept = objects_folder_of(options);
+  run.script = script_of(options, kept);
   require_can_save_map(options, run.script);
   require_one_quality(options, run.script);
   if (!options.record_session.empty()) require_can_become_session(options.record_session);
@@ -438,6 +483,7 @@ std::unique_ptr<OpenedRun> open_run(const RunOptions& options, UiChannel* link) 
   add(trajectory_sink(options), run.sinks);
   add(std::move(stream), run.sinks);
   add(std::move(pictures), run.sinks);
+  add(kept_objects_sink(kept, *run.session), run.sinks);
   if (link != nullptr)
     run.host.emplace(*link, *run.session, *run.playback, run.report.times, shown_room(run.map), run.is_live);
   return opened;

@@ -562,6 +562,23 @@ WayOut ObjectSet::way_out_of(const VirtualObject& object) {
 
 void ObjectSet::place(const std::string& name, const ObjectState& state) { put(take_over(name), state); }
 
+void ObjectSet::stand(const std::string& name, const Eigen::Isometry3d& T_world_object) {
+  VirtualObject& object = take_over(name);
+  Body& body = object.body;
+  body.T_world_object = T_world_object;
+  body.velocity_world_mps.setZero();
+  body.angular_velocity_world_rad_s.setZero();
+  body.asleep = true;
+  body.rests_on = SurfaceKind::kStatic;
+  body.supporting_bodies.clear();
+  object.in_room = true;
+  const bool is_in_unknown = is_in_solid_unknown(room_, object);
+  object.placement = {.R_world = T_world_object.linear(),
+                      .began_in_unknown = is_in_unknown,
+                      .in_unknown = is_in_unknown,
+                      .T_world_still = T_world_object};
+}
+
 void ObjectSet::drop(const DropRequest& drop, std::int64_t frame_number) {
   if (!drop.position_world) require_small_enough(named(drop.name), drop);
   VirtualObject& object = take_over(drop.name);

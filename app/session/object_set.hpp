@@ -156,6 +156,9 @@ class ObjectSet {
   /// stops it there. Throws PlaceRefused if no free pose is within 10 cm; the object's pose is then
   /// unchanged.
   void place(const std::string& name, const ObjectState& state);
+  /// Puts an object into the room exactly in a pose, asleep, without a search for a free pose. It wakes as any
+  /// sleeping object does: if its support is gone, or a surface enters it.
+  void stand(const std::string& name, const Eigen::Isometry3d& T_world_object);
   /// Drops an object. With drop.position_world, places it above that position as place() does. Without it,
   /// the drop waits for release_waiting(), and require_small_enough() may throw Error.
   void drop(const DropRequest& drop, std::int64_t frame_number);

@@ -59,6 +59,10 @@ class Session {
   /// Puts an object into the room; see ObjectSet::place(). All functions that take the name of an object
   /// throw Error if there is none of that name.
   void place(const std::string& name, const ObjectState& state) { objects_.place(name, state); }
+  /// Puts an object exactly into a pose, at rest; see ObjectSet::stand().
+  void stand(const std::string& name, const Eigen::Isometry3d& T_world_object) {
+    objects_.stand(name, T_world_object);
+  }
   /// Puts an object into the room with the velocities of `state`.
   void throw_object(const std::string& name, const ObjectState& state) { objects_.place(name, state); }
   /// Drops an object from above a position, or from above a level surface in view. Without a position, the

@@ -40,7 +40,7 @@ void require_replaceable(const fs::path& folder) {
     const std::string name = entry.path().filename().string();
     if (is_litter(name)) continue;
     empty = false;
-    if (name != kMapInfoFile && !is_map_part(name))
+    if (name != kMapInfoFile && name != kMapObjectsFolder && !is_map_part(name))
       refuse(folder, "exists and holds \"" + name +
                          "\", which is not part of a map; choose another name for the map");
   }

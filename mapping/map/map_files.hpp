@@ -24,6 +24,9 @@ inline constexpr const char* kMapCoverageFile = "coverage.png";  ///< optional
 inline constexpr const char* kMapUnknownFile = "unknown.bin";    ///< optional: missing in older maps
 inline constexpr const char* kMapTextureFile = "texture.jpg";    ///< optional, with kMapTexturePointsFile
 inline constexpr const char* kMapTexturePointsFile = "texture.bin";
+/// Folder, optional: the virtual objects that runs keep in the room; see app/objects/kept_objects.hpp. It changes
+/// while the map is in use and is not listed in map.json.
+inline constexpr const char* kMapObjectsFolder = "objects";
 
 /// Returns true for the names of the files, other than map.json, that a folder with a map of any format
 /// version may contain.

@@ -178,6 +178,7 @@ SavedMap read_map(const fs::path& folder) {
     require_sound(folder, info, kMapCoverageFile);
     map.coverage_png = read_picture(folder / kMapCoverageFile);
   }
+  map.objects_folder = folder / kMapObjectsFolder;
   map.octree = read_later<StaticMap>(folder, info, {octree_file_of(info)}, read_octree);
   if (info.files.contains(kMapUnknownFile))
     map.unknown =

@@ -30,6 +30,9 @@ struct SavedMap {
   /// Border of unknown space, set by load_map(). Null if the map was not saved before, or was saved by an
   /// earlier version.
   LazyPart<std::shared_ptr<const UnknownSurface>> unknown{std::shared_ptr<const UnknownSurface>()};
+  /// Folder of the objects that are kept in the room, set by load_map(); may not exist. A map that is saved gets
+  /// them. Empty: none.
+  std::filesystem::path objects_folder{};
   /// Texture of the mesh, or of an earlier mesh (see fits()); null: none.
   LazyPart<std::shared_ptr<const SurfaceTexture>> texture{std::shared_ptr<const SurfaceTexture>()};
 };

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "mapping/localization/keyframe_database.hpp"
@@ -11,8 +12,10 @@
 #include "mapping/storage/sha256.hpp"
 #include "mapping/surface/unknown/unknown_surface.hpp"
 #include "mapping/texture/surface_texture.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
+#include "mapping/types/system/folders.hpp"
 #include "mapping/types/system/version.hpp"
 
 namespace roomradar {
@@ -25,6 +28,26 @@ void require_savable(const std::filesystem::path& target, const Mesh& mesh) {
     fail("its surface has " + std::to_string(mesh.triangles.size()) + " triangles, and " +
          std::to_string(kMaxMeshTriangles) +
          " is the most; take a larger --deviation, or a coarser --resolution.");
+}
+
+/// Copies the objects that are kept in the room, if there are any.
+void carry_objects(const std::filesystem::path& from, const std::filesystem::path& map) {
+  std::error_code fault;
+  if (from.empty() || !std::filesystem::is_directory(from, fault)) return;
+  const std::filesystem::path to = map / kMapObjectsFolder;
+  make_folder(to);
+  for (const std::filesystem::directory_entry& entry : std::filesystem::directory_iterator(from, fault)) {
+    if (!entry.is_regular_file(fault)) continue;
+    const std::filesystem::path copy = to / entry.path().filename();
+    std::filesystem::create_hard_link(entry.path(), copy, fault);  // files there are replaced, never changed
+    if (!fault) continue;
+    fault.clear();
+    std::filesystem::copy_file(entry.path(), copy, fault);
+    if (fault) throw Error(entry.path().string() + ": cannot be copied: " + system_reason(fault));
+    sync_to_disk(copy);
+  }
+  if (fault) throw Error(from.string() + ": cannot be listed: " + system_reason(fault));
+  sync_to_disk(to);
 }
 
 }  // namespace
@@ -67,6 +90,8 @@ void MapWriter::commit(const SavedMap& map) {
 
   const std::shared_ptr<const SurfaceTexture> texture = fitting_texture(map);
   if (texture) write_surface_texture(*texture, path / kMapTextureFile, path / kMapTexturePointsFile);
+
+  carry_objects(map.objects_folder, path);
 
   MapInfo info = map.info;
   info.format_version = kMapFormatVersion;

@@ -17,6 +17,7 @@ int roomradar_main(int argc, char** argv) {
                       .map_info = run,
                       .map_verify = run,
                       .map_export = run,
+                      .map_objects = run,
                       .map_merge = run,
                       .map_diff = run,
                       .check = run,

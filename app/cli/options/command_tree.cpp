@@ -45,7 +45,7 @@ std::vector<CommandHelp> command_helps() {
         {"Source and window", {"--frames", "--calibration", "--poses", "--at-end", "--ui-scale"}},
         {"What the recording does not state",
          {"--depth-unit", "--camera", "--poses-convention", "--stamps", "--depth-topic"}},
-        {"Objects", {"--object-size", "--object-up"}},
+        {"Objects", {"--objects", "--object-size", "--object-up"}},
         {"What objects touch", {"--surfaces", "--unknown", "--commit-changes", "--save-map"}},
         {"Files written",
          {"--trajectory", "--stream", "--pictures", "--pictures-stride", "--record-session", "--frames-csv",
@@ -72,6 +72,10 @@ std::vector<CommandHelp> command_helps() {
        {{"Options", {"--unknown"}}},
        "  roomradar map export maps/kitchen kitchen.html\n"
        "  roomradar map export maps/kitchen kitchen.bt    # for octovis\n"},
+      {"map objects",
+       {},
+       "  roomradar map objects maps/kitchen\n"
+       "  roomradar map objects maps/kitchen rename object pot\n"},
       {"map merge",
        {{"Options", {"--map", "--deviation", "--report"}}},
        "  roomradar map merge maps/monday maps/tuesday --map maps/both\n"

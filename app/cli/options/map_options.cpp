@@ -36,6 +36,21 @@ void add_options(CLI::App& command, MapExportOptions& options) {
                    "write the frontier of unknown space instead of the room's mesh (default: off)");
 }
 
+void add_options(CLI::App& command, MapObjectsOptions& options) {
+  command.add_option("DIR", options.map, "folder of the map of a room (required)")->required();
+  command.add_option("ACTION", options.action, "list, remove NAME, or rename OLD NEW")
+      ->check(CLI::IsMember({"list", "remove", "rename"}))
+      ->capture_default_str();
+  command.add_option("NAME", options.names, "names of objects, for the action (default: none)");
+}
+
+void complete_options(const CLI::App& /*command*/, const MapObjectsOptions& options) {
+  const std::size_t wanted = options.action == "list" ? 0 : options.action == "remove" ? 1 : 2;
+  if (options.names.size() != wanted)
+    throw CLI::ValidationError("map objects DIR " + options.action + ": takes " + std::to_string(wanted) +
+                               " names, " + std::to_string(options.names.size()) + " are given");
+}
+
 void add_options(CLI::App& command, MapMergeOptions& options) {
   command.add_option("A", options.a, "map whose world frame is kept (required)")->required();
   command.add_option("B", options.b, "map to add; the finer resolution of both is used (required)")

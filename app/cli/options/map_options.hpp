@@ -1,4 +1,4 @@
-// map_options.hpp: options of `roomradar map info|verify|export|merge|diff`, `building` and `serve`.
+// map_options.hpp: options of `roomradar map info|verify|export|objects|merge|diff`, `building` and `serve`.
 #pragma once
 #include <optional>
 #include <string>
@@ -32,6 +32,15 @@ struct MapExportOptions {
   std::string path;
   /// True: exports the frontier of unknown space instead of the mesh.
   bool unknown = false;
+};
+
+struct MapObjectsOptions {
+  /// Map folder whose objects are listed or changed.
+  std::string map;
+  /// "list", "remove" or "rename".
+  std::string action = "list";
+  /// Names for the action: none, the object, or its old and new name.
+  std::vector<std::string> names;
 };
 
 struct MapMergeOptions {
@@ -98,6 +107,10 @@ void add_options(CLI::App& command, MapInfoOptions& options);
 void add_options(CLI::App& command, MapVerifyOptions& options);
 /// Adds the options of `map export`.
 void add_options(CLI::App& command, MapExportOptions& options);
+/// Adds the options of `map objects`.
+void add_options(CLI::App& command, MapObjectsOptions& options);
+/// Checks the number of names. Call after parsing. Throws CLI::ValidationError for wrong usage.
+void complete_options(const CLI::App& command, const MapObjectsOptions& options);
 /// Adds the options of `map merge`.
 void add_options(CLI::App& command, MapMergeOptions& options);
 /// Adds the options of `map diff`.

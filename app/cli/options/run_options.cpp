@@ -33,6 +33,13 @@ void add_world_options(CLI::App& command, RunOptions& options) {
   command
       .add_option("--script", options.script, "events file (default: drop the objects over surfaces in view)")
       ->type_name("FILE");
+  command
+      .add_option(
+          "--objects", options.kept_objects,
+          "objects that stay in the room from run to run: those of the map (keep), of another folder, or\n"
+          "none, which leaves the map's as they are. Not for buildings and recorded sessions")
+      ->type_name("keep|none|DIR")
+      ->capture_default_str();
   add_choice(command, "--surfaces", options.surfaces,
              {{"holes", SurfacePolicy::kHoles},
               {"skirt", SurfacePolicy::kSkirt},

@@ -25,6 +25,8 @@ struct RunOptions {
   std::string source;
   /// Folder to read the map of a room or building from.
   std::string map;
+  /// Objects that stay in the room: "keep" (those of the map's folder), "none", or a folder.
+  std::string kept_objects = "keep";
   /// Origin of the camera poses: localised in the map (kTracked) or recorded.
   PoseOrigin poses = PoseOrigin::kAuto;
   /// Range of frames to process; unset: all.

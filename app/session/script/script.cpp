@@ -269,6 +269,19 @@ Action read_place(LineReader& line) {
   return place;
 }
 
+Action read_stand(LineReader& line) {
+  StandObject stand{.name = read_name(line)};
+  stand.position_world = read_position(line);
+  const char* const wanted = "a quaternion x y z w";
+  for (double& value : stand.R_world_object.coeffs()) value = line.number(wanted, -1.0, 1.0);
+  constexpr double kMostOff = 1e-3;
+  if (!(std::abs(stand.R_world_object.norm() - 1.0) <= kMostOff))
+    line.fail("the quaternion of 'stand " + stand.name + "' must have the length 1");
+  // A quaternion that this program wrote is normalised already, and stays the same to the bit.
+  if (std::abs(stand.R_world_object.norm() - 1.0) > 1e-12) stand.R_world_object.normalize();
+  return stand;
+}
+
 Action read_drop(LineReader& line) {
   DropObject drop{.name = read_name(line)};
   if (line.take_if("near")) {
@@ -359,9 +372,10 @@ Action read_commit(LineReader& /*line*/) { return CommitChanges{}; }
 Action read_quit(LineReader& /*line*/) { return Quit{}; }
 
 /// Each action's keyword, and the function that reads the words after the keyword.
-constexpr std::array<Word<Action (*)(LineReader&)>, 17> kActions = {
+constexpr std::array<Word<Action (*)(LineReader&)>, 18> kActions = {
     {{"add", read_add},
      {"place", read_place},
+     {"stand", read_stand},
      {"drop", read_drop},
      {"throw", read_throw},
      {"material", read_change_material},
@@ -433,6 +447,11 @@ std::string action_words(const Action& action) {
           [](const PlaceObject& place) {
             return "place " + place.name + vector_words(place.position_world) +
                    turned_words(place.turned_deg);
+          },
+          [](const StandObject& stand) {
+            const Eigen::Quaterniond& q = stand.R_world_object;
+            return "stand " + stand.name + vector_words(stand.position_world) + number_word(q.x()) +
+                   number_word(q.y()) + number_word(q.z()) + number_word(q.w());
           },
           [](const DropObject& drop) { return drop_words(drop); },
           [](const ThrowObject& thrown) { return throw_words(thrown); },

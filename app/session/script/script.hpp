@@ -1,6 +1,7 @@
 // script.hpp: reads the events file of `roomradar run --script FILE`, a list of timed actions.
 #pragma once
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
@@ -52,6 +53,18 @@ struct PlaceObject {
   /// Orientation as yaw, pitch and roll; see script.hpp. Unset: unchanged.
   std::optional<Eigen::Vector3d> turned_deg{};
   friend bool operator==(const PlaceObject&, const PlaceObject&) = default;
+};
+
+/// Puts an object exactly into a pose, at rest: it is not moved out of surfaces, and moves only once something
+/// wakes it.
+struct StandObject {
+  std::string name{};
+  Eigen::Vector3d position_world = Eigen::Vector3d::Zero();            ///< m, object's origin
+  Eigen::Quaterniond R_world_object = Eigen::Quaterniond::Identity();  ///< unit
+  friend bool operator==(const StandObject& a, const StandObject& b) {
+    return a.name == b.name && a.position_world == b.position_world &&
+           a.R_world_object.coeffs() == b.R_world_object.coeffs();
+  }
 };
 
 /// Lets an object fall from above a point, or from above a level surface in view.
@@ -160,7 +173,7 @@ struct Quit {
   friend bool operator==(const Quit&, const Quit&) = default;
 };
 
-using Action = std::variant<AddObject, PlaceObject, DropObject, ThrowObject, ChangeMaterial, RemoveObject,
+using Action = std::variant<AddObject, PlaceObject, StandObject, DropObject, ThrowObject, ChangeMaterial, RemoveObject,
                             TurnObject, CarryObject, ReleaseObject, SetSurfaces, SetUnknown, SetRadar,
                             SetQuality, PlayCamera, CommitChanges, Quit>;
 
@@ -208,6 +221,7 @@ enum class LastLine { kWhole, kMayBeCut };
 ///     frame 11   drop pot near 0.4 -0.1 0.7       above the one nearest to this point, at most 25 cm away
 ///     time 2.5   drop pot at 0.4 -0.1 0.75 height 0.3
 ///     time 4     place pot 0.4 -0.1 0.9
+///     time 4     stand pot 0.4 -0.1 0.75 0 0 0.38 0.92     exactly there, asleep; unit quaternion x y z w
 ///     time 5     throw pot 0.4 -0.1 1.2 velocity 1 0 0.5
 ///     time 5.5   throw pot 0.4 -0.1 1.2 velocity 1 0 0.5 spin 0 6 0     at most 20 m/s, 60 rad/s about x y z
 ///     time 5.5   turn pot 0 0 45                  about the world's axes (degrees)

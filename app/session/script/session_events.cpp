@@ -73,6 +73,9 @@ void apply(Session& session, const ScriptEvent& event) {
             session.place(place.name, {.position_world = place.position_world,
                                        .R_world_object = R_world_object_of(place.turned_deg)});
           },
+          [&](const StandObject& stand) {
+            session.stand(stand.name, Eigen::Translation3d(stand.position_world) * stand.R_world_object);
+          },
           [&](const DropObject& drop) {
             session.drop({drop.name, drop.position_world, drop.near_world, drop.height_m,
                           R_world_object_of(drop.turned_deg)});
