@@ -2,13 +2,16 @@
 #include "app/commands/commands.hpp"
 
 #include <cstdio>
+#include <filesystem>
 #include <utility>
 
 #include "app/cli/registered_maps.hpp"
 #include "app/cli/report.hpp"
 #include "app/media/map_picture.hpp"
 #include "app/media/picture_file.hpp"
+#include "app/objects/kept_objects.hpp"
 #include "app/page/room_page.hpp"
+#include "mapping/map/map_files.hpp"
 #include "mapping/map/map_merge.hpp"
 #include "mapping/map/map_writer.hpp"
 #include "mapping/types/system/error.hpp"
@@ -33,7 +36,10 @@ int run(const MapMergeOptions& options) {
                 "; merged with itself, it would count every observation twice");
   const Registration found = require_registered(a, b, options.a, options.b, report);
   const SavedMap both = report.times.timed("merge", [&] { return merge_maps(std::move(a), b, found.T_a_b); });
-  report.times.timed("save", [&] { save_map(options.map, both); });
+  report.times.timed("save", [&] {
+    save_map(options.map, both);
+    add_kept_objects(b.objects_folder, found.T_a_b, std::filesystem::path(options.map) / kMapObjectsFolder);
+  });
   report.results["map"] = {{"triangles", both.mesh.triangles.size()},
                            {"bytes", both.octree.load().memory_bytes()}};
   write_report(report, options.report);

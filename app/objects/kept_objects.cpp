@@ -2,6 +2,7 @@
 #include "app/objects/kept_objects.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -28,6 +29,7 @@ constexpr const char* kList = "objects.json";
 constexpr const char* kFormat = "roomradar objects";
 constexpr int kFormatVersion = 1;
 constexpr std::uintmax_t kMaxListBytes = 16U << 20U;
+constexpr std::uintmax_t kMaxModelBytes = std::uintmax_t{4} << 30U;
 constexpr std::chrono::seconds kBetweenWrites{2};
 
 Json json_of(const KeptObject& object) {
@@ -181,6 +183,37 @@ void write_kept_objects(const fs::path& folder, const std::vector<KeptObject>& o
   AtomicFile file(path);
   file.stream() << text;
   file.commit();
+}
+
+void add_kept_objects(const fs::path& from, const Eigen::Isometry3d& T_to_from, const fs::path& to) {
+  constexpr double kSame_m = 0.005;
+  const std::vector<KeptObject> more = read_kept_objects(from);
+  if (more.empty()) return;
+  std::vector<KeptObject> objects = read_kept_objects(to);
+  const auto is_taken = [&](const std::string& name) {
+    return std::any_of(objects.begin(), objects.end(),
+                       [&](const KeptObject& object) { return object.name == name; });
+  };
+  make_folder(to);
+  for (KeptObject object : more) {
+    object.T_world_object = T_to_from * object.T_world_object;
+    const auto is_there = [&](const KeptObject& other) {
+      return other.model == object.model &&
+             (other.T_world_object.translation() - object.T_world_object.translation()).norm() < kSame_m;
+    };
+    if (std::any_of(objects.begin(), objects.end(), is_there)) continue;
+    const std::string stem = object.name;
+    for (int number = 2; is_taken(object.name); ++number) object.name = stem + std::to_string(number);
+    std::error_code fault;
+    if (!fs::exists(to / object.model, fault)) {
+      AtomicFile file(to / object.model);
+      const std::string bytes = read_bytes(from / object.model, "a model", kMaxModelBytes);
+      file.stream().write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+      file.commit();
+    }
+    objects.push_back(std::move(object));
+  }
+  write_kept_objects(to, objects);
 }
 
 void delete_unused_models(const fs::path& folder) {

@@ -41,6 +41,13 @@ std::vector<KeptObject> read_kept_objects(const std::filesystem::path& folder);
 /// written.
 void write_kept_objects(const std::filesystem::path& folder, const std::vector<KeptObject>& objects);
 
+/// Adds the objects of one folder to those of another, whose room is the same, and copies their models. An
+/// object that the other folder has already (same model, within 5 mm) is left out; one whose name is taken
+/// gets a number. Throws Error as read_kept_objects() and write_kept_objects() do.
+/// @param T_to_from  from the world frame of `from` to that of `to`
+void add_kept_objects(const std::filesystem::path& from, const Eigen::Isometry3d& T_to_from,
+                      const std::filesystem::path& to);
+
 /// Deletes the models of a folder that no object of objects.json has.
 void delete_unused_models(const std::filesystem::path& folder);
 

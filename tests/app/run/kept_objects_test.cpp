@@ -147,6 +147,25 @@ TEST_F(KeptObjects, SurviveAnExtensionOfTheMap) {
   EXPECT_TRUE(reported()[0].at("at_rest").get<bool>());
 }
 
+TEST_F(KeptObjects, AMergedMapHasThoseOfBothRooms) {
+  ASSERT_EQ(play(kView), 0) << said();
+  const std::vector<KeptObject> first = read_kept_objects(objects());
+  ASSERT_EQ(first.size(), 1U);
+  Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();
+  T_a_b.translation() = Eigen::Vector3d(0.0, 0.25, 0.0);
+  const fs::path other = at("other");
+  add_kept_objects(objects(), Eigen::Isometry3d::Identity(), other);
+  add_kept_objects(objects(), T_a_b, other);
+  add_kept_objects(objects(), T_a_b, other);  // there already
+  const std::vector<KeptObject> both = read_kept_objects(other);
+  ASSERT_EQ(both.size(), 2U);
+  EXPECT_EQ(both[0], first[0]);
+  EXPECT_EQ(both[1].name, first[0].name + "2");
+  EXPECT_TRUE((T_a_b * first[0].T_world_object).isApprox(both[1].T_world_object, 1e-12));
+  EXPECT_EQ(contents(other).size(), 2U);  // the list, and one model
+  fs::remove_all(other);
+}
+
 TEST_F(KeptObjects, AKilledRunLosesNoneOfThem) {
   ASSERT_EQ(play(kView), 0) << said();
   const std::vector<KeptObject> first = read_kept_objects(objects());
