@@ -74,9 +74,7 @@ class KeptObjects : public ::testing::Test {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return program(arguments);
   }
-  static nlohmann::json reported() {
-    return nlohmann::json::parse(text_of(at("report.json"))).at("results").at("objects");
-  }
+  static nlohmann::json reported() { return nlohmann::json::parse(text_of(at("report.json"))).at("objects"); }
 
  private:
   static inline test::TemporaryFolder* folder_ = nullptr;
@@ -207,7 +205,7 @@ TEST_F(KeptObjects, ARecordedRunReplaysWithThem) {
   ASSERT_EQ(play(kOtherDay, {"--record-session", at("session")}), 0) << said();
   fs::remove_all(objects());  // a replay does not need the map's
   ASSERT_EQ(program({"run", at("session"), "--report", at("report.json")}), 0) << said();
-  const nlohmann::json replay = nlohmann::json::parse(text_of(at("report.json"))).at("results").at("replay");
+  const nlohmann::json replay = nlohmann::json::parse(text_of(at("report.json"))).at("replay");
   EXPECT_EQ(replay.at("different"), 0);
   EXPECT_EQ(replay.at("same"), replay.at("recorded"));
   EXPECT_FALSE(fs::exists(objects()));

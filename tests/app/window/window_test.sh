@@ -181,7 +181,7 @@ play_again() {
 play_again 20
 
 echo "== Ctrl-C in the terminal ends the window, too, and the summary comes"
-"$program" run 'sim:table?frames=30&width=320&path=view&seed=2' --poses recorded --map "$work/map" --window --at-end loop \
+"$program" run 'sim:table?frames=30&width=320&path=view&seed=2' --poses recorded --map "$work/map" --objects none --window --at-end loop \
   > "$work/interrupted" 2>&1 &
 shown=$!
 until_true grep -q '^running .* located' "$work/interrupted"
@@ -201,7 +201,7 @@ if command -v fakenect > /dev/null; then
   rm -r "$work/map" "$work/session"
   "$program" prescan 'sim:table?frames=20&width=320&path=view&seed=2' --map "$work/map" --resolution 0.03 > "$work/log" 2>&1 ||
     fail prescan
-  FAKENECT_LOOP=0 fakenect "$work/kinect" "$program" run kinect:0 --map "$work/map" --window \
+  FAKENECT_LOOP=0 fakenect "$work/kinect" "$program" run kinect:0 --map "$work/map" --objects none --window \
     --record-session "$work/session" > "$work/log" 2>&1 &
   shown=$!
   until_true has_focus
