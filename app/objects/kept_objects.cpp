@@ -154,7 +154,7 @@ std::vector<KeptObject> read_kept_objects(const fs::path& folder) {
   const auto fail = [&](const std::string& why) {
     throw Error(path.string() + ": " + why + "; --objects none runs without the kept objects");
   };
-  if (!json.is_object() || json.value("format", "") != kFormat)
+  if (!json.is_object() || !json.contains("format") || json["format"] != kFormat)
     fail("is not the list of a room's objects, or is damaged");
   const auto version = json.find("format_version");
   if (version == json.end() || !version->is_number_integer() || *version < 1 || *version > kFormatVersion)
