@@ -250,7 +250,7 @@ void ObjectKeeper::begin_to_write(std::vector<Standing> standing) {
       objects.push_back({one.name, file, one.material, one.T_world_object});
     }
     std::error_code fault;
-    if (objects.empty() && !fs::exists(folder_, fault)) return;
+    if (objects.empty() && !fs::exists(folder_ / kList, fault)) return;
     write_kept_objects(folder_, objects);
   });
 }

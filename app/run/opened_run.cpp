@@ -72,7 +72,12 @@ std::filesystem::path objects_folder_of(const RunOptions& options) {
   if (options.kept_objects == "none" || is_session_folder(options.source)) return {};
   if (options.kept_objects != "keep") return options.kept_objects;
   if (is_building(options.map)) return {};
-  return std::filesystem::path(options.map) / kMapObjectsFolder;
+  std::filesystem::path folder = std::filesystem::path(options.map) / kMapObjectsFolder;
+  // Made before the map is opened: its folder then stays the same during the run, see folder_version().
+  std::error_code unwritable;
+  if (std::filesystem::exists(std::filesystem::path(options.map) / kMapInfoFile, unwritable))
+    std::filesystem::create_directory(folder, unwritable);
+  return folder;
 }
 
 /// Returns events that put the kept objects where they stood. Leaves out those whose name an object of

@@ -38,9 +38,8 @@ void add_options(CLI::App& command, MapExportOptions& options) {
 
 void add_options(CLI::App& command, MapObjectsOptions& options) {
   command.add_option("DIR", options.map, "folder of the map of a room (required)")->required();
-  command.add_option("ACTION", options.action, "list, remove NAME, or rename OLD NEW")
-      ->check(CLI::IsMember({"list", "remove", "rename"}))
-      ->capture_default_str();
+  command.add_option("ACTION", options.action, "list, remove NAME, or rename OLD NEW (default: list)")
+      ->check(CLI::IsMember({"list", "remove", "rename"}));
   command.add_option("NAME", options.names, "names of objects, for the action (default: none)");
 }
 

@@ -37,9 +37,8 @@ void add_world_options(CLI::App& command, RunOptions& options) {
       .add_option(
           "--objects", options.kept_objects,
           "objects that stay in the room from run to run: those of the map (keep), of another folder, or\n"
-          "none, which leaves the map's as they are. Not for buildings and recorded sessions")
-      ->type_name("keep|none|DIR")
-      ->capture_default_str();
+          "none, which leaves the map's as they are; not in buildings and replays (default: keep)")
+      ->type_name("keep|none|DIR");
   add_choice(command, "--surfaces", options.surfaces,
              {{"holes", SurfacePolicy::kHoles},
               {"skirt", SurfacePolicy::kSkirt},
