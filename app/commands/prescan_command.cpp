@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,6 +17,7 @@
 #include "app/cli/interrupt.hpp"
 #include "app/cli/report.hpp"
 #include "app/evaluation/held_out.hpp"
+#include "app/objects/kept_objects.hpp"
 #include "app/quality/quality_json.hpp"
 #include "app/scan/controlled_source.hpp"
 #include "app/scan/live/next_view.hpp"
@@ -24,6 +26,7 @@
 #include "app/scan/scan_progress.hpp"
 #include "app/window/scan/scan_window.hpp"
 #include "mapping/deskewed_source.hpp"
+#include "mapping/map/map_files.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/map/map_writer.hpp"
 #include "mapping/prescan.hpp"
@@ -179,6 +182,24 @@ std::optional<NextView> first_view_of(const PrescanOptions& options) {
   return view_of(options.look_at->point_world, options.look_at->viewpoint_world, Eigen::Vector3d::UnitZ());
 }
 
+/// Says that objects go with the map that a scan without --resume replaces. A list that cannot be read counts
+/// as objects.
+void announce_lost_objects(const PrescanOptions& options) {
+  const std::filesystem::path folder = std::filesystem::path(options.map) / kMapObjectsFolder;
+  std::string objects = "the objects";
+  try {
+    const std::size_t count = read_kept_objects(folder).size();
+    if (count == 0) return;
+    objects = std::to_string(count) + (count == 1 ? " object" : " objects");
+  } catch (const Error&) {
+  }
+  std::fprintf(
+      stderr,
+      "roomradar: %s: this scan replaces the map, and %s that stood in it; Ctrl-C now keeps both, and "
+      "--resume extends the map\n",
+      options.map.c_str(), objects.c_str());
+}
+
 /// Scans and saves. Returns the exit status.
 int scan_and_save(const PrescanOptions& options, ScanChannel* channel) {
   Report report;
@@ -194,7 +215,10 @@ int scan_and_save(const PrescanOptions& options, ScanChannel* channel) {
   if (!start.is_live) Interrupt::say(kStopsWithoutMap);
   if (start.checkpoints) say_at_once_how_to_resume(options);
   const bool extends = start.map.has_value();
-  if (extends) keep_settings_of_map(options, *start.map, config, report);
+  if (extends)
+    keep_settings_of_map(options, *start.map, config, report);
+  else
+    announce_lost_objects(options);
   announce_memory(*start.source, config, report);
   ScanWindow window{channel};
   if (channel) {

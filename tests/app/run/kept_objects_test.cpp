@@ -145,6 +145,14 @@ TEST_F(KeptObjects, SurviveAnExtensionOfTheMap) {
   EXPECT_TRUE(reported()[0].at("at_rest").get<bool>());
 }
 
+TEST_F(KeptObjects, AScanThatReplacesTheMapSaysThatTheyGo) {
+  ASSERT_EQ(play(kView), 0) << said();
+  ASSERT_EQ(program({"prescan", kScan, "--map", map(), "--resolution", "0.04"}), 0) << said();
+  EXPECT_NE(said().find("this scan replaces the map, and 1 object that stood in it"), std::string::npos)
+      << said();
+  EXPECT_TRUE(read_kept_objects(objects()).empty());
+}
+
 TEST_F(KeptObjects, AMergedMapHasThoseOfBothRooms) {
   ASSERT_EQ(play(kView), 0) << said();
   const std::vector<KeptObject> first = read_kept_objects(objects());
