@@ -8,7 +8,6 @@
 
 #include <atomic>
 #include <cstdio>
-#include <cstdlib>
 #include <mutex>
 #include <stdexcept>
 #include <thread>
@@ -93,7 +92,7 @@ TEST(ParallelFor, AChildOfForkWorksAndEnds) {
   if (child == 0) {
     std::atomic<int> worked = 0;
     parallel_for(100, 4, [&](std::size_t, unsigned) { ++worked; });
-    std::exit(worked == 100 ? 0 : 1);
+    _exit(worked == 100 ? 0 : 1);
   }
   int status = -1;
   ASSERT_EQ(waitpid(child, &status, 0), child);
