@@ -30,8 +30,8 @@ def has(module):
 
 
 def stream(*options):
-    return support.command("run", support.VIEW, "--map", support.table_folder(), "--poses", "recorded", "--stream", "-",
-                           *options)
+    return support.command("run", support.VIEW, "--map", support.table_folder(), "--objects", "none", "--poses",
+                           "recorded", "--stream", "-", *options)
 
 
 class Help(unittest.TestCase):

@@ -76,8 +76,8 @@ def fingerprints(folder):
 def compare_session(test, source, room, by_command, **settings):
     """Compares each frame with a recorded run. Returns the session after its last frame."""
     folder = temporary_folder()
-    command("run", source, "--map", room, "--record-session", folder / "run", "--pictures", folder / "pictures",
-            *by_command)
+    command("run", source, "--map", room, "--objects", "none", "--record-session", folder / "run", "--pictures",
+            folder / "pictures", *by_command)
     recorded = fingerprints(folder / "run")
     played = rr.Session(rr.open_map(room), **settings.pop("session", {}))
     played.add("object", "teapot")
