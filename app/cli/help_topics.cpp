@@ -20,7 +20,7 @@ the file: an event that stands below a later one waits for it. Positions are in 
              # drop view and near: from 0.05 m instead where the object would topple or move away
   time 2.5   drop pot at 0.4 -0.1 0.75 height 0.3
   time 4     place pot 0.4 -0.1 0.9           # drop, place, throw may end: turned YAW PITCH ROLL
-  time 4     stand pot 0.4 -0.1 0.75 0 0 0.38 0.92   # exactly there, asleep; quaternion x y z w
+  time 4     stand pot 0.4 -0.1 0.75 0 0 0.6 0.8   # exactly there, asleep; quaternion x y z w
   time 5     throw pot 0.4 -0.1 1.2 velocity 1 0 0.5
   time 5.5   throw pot 0.4 -0.1 1.2 velocity 1 0 0.5 spin 0 6 0    # rad/s about x y z
   time 5.5   turn pot 0 0 45                  # about the world's axes

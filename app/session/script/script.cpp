@@ -274,9 +274,9 @@ Action read_stand(LineReader& line) {
   stand.position_world = read_position(line);
   const char* const wanted = "a quaternion x y z w";
   for (double& value : stand.R_world_object.coeffs()) value = line.number(wanted, -1.0, 1.0);
-  constexpr double kMostOff = 1e-3;
+  constexpr double kMostOff = 0.02;  // of rounded numbers
   if (!(std::abs(stand.R_world_object.norm() - 1.0) <= kMostOff))
-    line.fail("the quaternion of 'stand " + stand.name + "' must have the length 1");
+    line.fail("the quaternion of 'stand " + stand.name + "' must have the length 1, within 2 %");
   // A quaternion that this program wrote is normalised already, and stays the same to the bit.
   if (std::abs(stand.R_world_object.norm() - 1.0) > 1e-12) stand.R_world_object.normalize();
   return stand;

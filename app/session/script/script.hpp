@@ -221,7 +221,7 @@ enum class LastLine { kWhole, kMayBeCut };
 ///     frame 11   drop pot near 0.4 -0.1 0.7       above the one nearest to this point, at most 25 cm away
 ///     time 2.5   drop pot at 0.4 -0.1 0.75 height 0.3
 ///     time 4     place pot 0.4 -0.1 0.9
-///     time 4     stand pot 0.4 -0.1 0.75 0 0 0.38 0.92     exactly there, asleep; unit quaternion x y z w
+///     time 4     stand pot 0.4 -0.1 0.75 0 0 0.6 0.8     exactly there, asleep; unit quaternion x y z w
 ///     time 5     throw pot 0.4 -0.1 1.2 velocity 1 0 0.5
 ///     time 5.5   throw pot 0.4 -0.1 1.2 velocity 1 0 0.5 spin 0 6 0     at most 20 m/s, 60 rad/s about x y z
 ///     time 5.5   turn pot 0 0 45                  about the world's axes (degrees)
