@@ -273,7 +273,7 @@ Action read_stand(LineReader& line) {
   StandObject stand{.name = read_name(line)};
   stand.position_world = read_position(line);
   const char* const wanted = "a quaternion x y z w";
-  for (double& value : stand.R_world_object.coeffs()) value = line.number(wanted, -1.0, 1.0);
+  for (double& value : stand.R_world_object.coeffs()) value = line.number(wanted, -1.1, 1.1);
   constexpr double kMostOff = 0.02;  // of rounded numbers
   if (!(std::abs(stand.R_world_object.norm() - 1.0) <= kMostOff))
     line.fail("the quaternion of 'stand " + stand.name + "' must have the length 1, within 2 %");
