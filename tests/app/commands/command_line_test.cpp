@@ -430,8 +430,8 @@ TEST_F(CommandLine, ARecordingWithoutColourRunsAsOneWithColourDoes) {
                   recording.string());
     ASSERT_EQ(recorded.status, 0) << recorded.out;
     const Outcome ran =
-        roomradar("run " + recording.string() + " --poses recorded --map " + map() + " --report " +
-                  report_path.string() + " --pictures " + (folder_ / "colours").string());
+        roomradar("run " + recording.string() + " --objects none --poses recorded --map " + map() +
+                  " --report " + report_path.string() + " --pictures " + (folder_ / "colours").string());
     ASSERT_EQ(ran.status, 0) << ran.out;
     EXPECT_TRUE(fs::exists(folder_ / "colours" / "000000.png"));
     fs::remove_all(folder_ / "colours");
