@@ -106,6 +106,20 @@ struct Parsing {
   std::function<int()> work{};
 };
 
+/// Returns the work of a command that another program implements.
+std::function<int()> handing_over(const std::string& program, const Parsing& parsing) {
+  return [program, line = parsing.line] { return hand_over(program, line); };
+}
+
+/// Returns the work of a command.
+/// @param program  the program that executes the command if `execute` is null
+template <typename Options>
+std::function<int()> work_of(const std::shared_ptr<Options>& options, int (*execute)(const Options&),
+                             const std::string& program, const Parsing& parsing) {
+  if (execute == nullptr) return handing_over(program, parsing);
+  return [options, execute] { return execute(*options); };
+}
+
 /// Adds a command.
 /// @param parsing  receives the work when the command was parsed; must outlive the parsing
 /// @param program  the program that executes the command if `execute` is null
@@ -118,10 +132,7 @@ CLI::App* add_command(CLI::App& app, const char* name, const char* description, 
   command->callback([command, options, &parsing, execute, program] {
     if constexpr (requires { options->line; }) options->line = parsing.line;
     if constexpr (requires { complete_options(*command, *options); }) complete_options(*command, *options);
-    if (execute != nullptr)
-      parsing.work = [options, execute] { return execute(*options); };
-    else
-      parsing.work = [program, line = parsing.line] { return hand_over(program, line); };
+    parsing.work = work_of(options, execute, program, parsing);
   });
   return command;
 }
@@ -134,11 +145,9 @@ void add_command_of_both(CLI::App& map, const char* name, const char* descriptio
   const auto options = std::make_shared<Options>();
   add_options(*command, *options);
   command->callback([options, &parsing, execute, execute_on_building] {
-    parsing.work = [options, execute, execute_on_building, line = parsing.line] {
-      const bool has_tiles = is_building(options->map);
-      const auto chosen = has_tiles ? execute_on_building : execute;
-      return chosen != nullptr ? chosen(*options)
-                               : hand_over(has_tiles ? kBuildingProgram : kRoomradar, line);
+    parsing.work = [options, of_room = work_of(options, execute, kRoomradar, parsing),
+                    of_building = work_of(options, execute_on_building, kBuildingProgram, parsing)] {
+      return is_building(options->map) ? of_building() : of_room();
     };
   });
 }
@@ -178,8 +187,7 @@ void add_building_commands(CLI::App& app, Parsing& parsing) {
   CLI::App& steps = *app.add_subcommand("building-step", "one job of `roomradar building`");
   steps.group("");
   steps.prefix_command();  // its program parses the rest
-  steps.callback(
-      [&parsing] { parsing.work = [line = parsing.line] { return hand_over(kBuildingProgram, line); }; });
+  steps.callback([&parsing] { parsing.work = handing_over(kBuildingProgram, parsing); });
 }
 
 /// Adds `help [COMMAND | TOPIC]`.
@@ -254,7 +262,7 @@ void add_commands(CLI::App& app, Parsing& parsing) {
         if (parsing.here.doctor != nullptr)
           parsing.work = parsing.here.doctor;
         else
-          parsing.work = [line = parsing.line] { return hand_over(kRoomradar, line); };
+          parsing.work = handing_over(kRoomradar, parsing);
       });
   add_help_command(app);
   add_measuring_commands(app, parsing);
@@ -274,7 +282,7 @@ bool begins_with_file(CLI::App& app, int argc, const char* const* argv) {
 ParsedCommand parse_command_line(int argc, const char* const* argv, const Commands& here) {
   Parsing parsing{here, {argv, argv + argc}};
   if (argc <= 1 && here.without_arguments != nullptr)
-    return {[&here] { return here.without_arguments(kAlone); }, 0};
+    return {[execute = here.without_arguments] { return execute(kAlone); }, 0};
   CLI::App app(
       "roomradar: prescan a room once with a Kinect, then run augmented reality in the saved map.\n"
       "Exit status: 0 done, 1 the work failed (stderr says what and what to do), 2 wrong usage.",

@@ -56,7 +56,6 @@ struct ParsedCommand {
 
 /// Parses the arguments. Prints help or a usage message if needed. Throws Error if a presets file or a
 /// recorded session named in the arguments cannot be read.
-/// @param here  must outlive the result's `work`
 ParsedCommand parse_command_line(int argc, const char* const* argv, const Commands& here);
 
 /// main() of a program with these commands: executes the command line and reports errors. Returns the exit

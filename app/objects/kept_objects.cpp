@@ -126,15 +126,20 @@ class ObjectReader {
   }
 };
 
+/// Writes a file whole or not at all.
+void replace_file(const fs::path& path, const std::string& bytes) {
+  AtomicFile file(path);
+  file.stream().write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  file.commit();
+}
+
 /// Writes the model unless the folder has it. Returns the name of its file.
 std::string keep_model(const Model& model, const fs::path& folder) {
   const std::string bytes = model_copy(model);
   std::string name = sha256_of(bytes) + kModelCopyExtension;
   std::error_code fault;
   if (fs::file_size(folder / name, fault) == bytes.size() && !fault) return name;
-  AtomicFile file(folder / name);
-  file.stream().write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  file.commit();
+  replace_file(folder / name, bytes);
   return name;
 }
 
@@ -180,9 +185,7 @@ void write_kept_objects(const fs::path& folder, const std::vector<KeptObject>& o
   std::error_code fault;
   if (fs::exists(path, fault) && read_bytes(path, "the objects of a room", kMaxListBytes) == text) return;
   make_folder(folder);
-  AtomicFile file(path);
-  file.stream() << text;
-  file.commit();
+  replace_file(path, text);
 }
 
 void add_kept_objects(const fs::path& from, const Eigen::Isometry3d& T_to_from, const fs::path& to) {
@@ -205,12 +208,8 @@ void add_kept_objects(const fs::path& from, const Eigen::Isometry3d& T_to_from, 
     const std::string stem = object.name;
     for (int number = 2; is_taken(object.name); ++number) object.name = stem + std::to_string(number);
     std::error_code fault;
-    if (!fs::exists(to / object.model, fault)) {
-      AtomicFile file(to / object.model);
-      const std::string bytes = read_bytes(from / object.model, "a model", kMaxModelBytes);
-      file.stream().write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-      file.commit();
-    }
+    if (!fs::exists(to / object.model, fault))
+      replace_file(to / object.model, read_bytes(from / object.model, "a model", kMaxModelBytes));
     objects.push_back(std::move(object));
   }
   write_kept_objects(to, objects);
@@ -278,7 +277,10 @@ void ObjectKeeper::keep(std::span<const std::unique_ptr<VirtualObject>> objects)
 
 void ObjectKeeper::finish(std::span<const std::unique_ptr<VirtualObject>> objects) {
   if (!has_begun_) return;  // the room's objects are not in the session yet
-  wait();
+  try {
+    wait();
+  } catch (const Error&) {  // an earlier write; this one tells if the fault remains
+  }
   begin_to_write(in_room(objects));
   wait();
   std::error_code fault;
