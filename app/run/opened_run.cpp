@@ -67,8 +67,9 @@ void drop_objects(const std::vector<ObjectOption>& objects, Script& script) {
 
 // ---- the objects that stay in the room ----
 
-/// Returns the folder in which the run keeps its objects; empty: they are not kept.
-std::filesystem::path objects_folder_of(const RunOptions& options) {
+/// Returns the folder in which the run keeps its objects, which is made if it is the map's; empty: they are not
+/// kept.
+std::filesystem::path open_objects_folder(const RunOptions& options) {
   if (options.kept_objects == "none" || is_session_folder(options.source)) return {};
   if (options.kept_objects != "keep") return options.kept_objects;
   if (is_building(options.map)) return {};
@@ -462,7 +463,7 @@ std::unique_ptr<OpenedRun> open_run(const RunOptions& options, UiChannel* link) 
   if (options.stream != "-") require_writable(options.stream);
   require_outside_maps(options.video);
   require_contents_outside_maps(options.pictures);
-  const std::filesystem::path kept = objects_folder_of(options);
+  const std::filesystem::path kept = open_objects_folder(options);
   run.script = script_of(options, kept);
   require_can_save_map(options, run.script);
   require_one_quality(options, run.script);

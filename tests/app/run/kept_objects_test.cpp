@@ -86,6 +86,10 @@ TEST_F(KeptObjects, StandInTheNextRunWhereTheyStood) {
   const std::vector<KeptObject> first = read_kept_objects(objects());
   ASSERT_EQ(first.size(), 1U) << said();
   ASSERT_TRUE(reported()[0].at("at_rest").get<bool>());
+  // What is kept is the end of the run, not an earlier moment of the fall.
+  const auto end_m = reported()[0].at("position_m").get<std::vector<double>>();
+  for (int axis = 0; axis < 3; ++axis)
+    EXPECT_NEAR(first[0].T_world_object.translation()[axis], end_m[static_cast<std::size_t>(axis)], 1e-9);
 
   ASSERT_EQ(play(kOtherDay), 0) << said();
   EXPECT_NE(said().find("objects kept in the room: " + first[0].name), std::string::npos) << said();
