@@ -62,6 +62,8 @@ struct PrescanCounts {
   std::int64_t restarts = 0;       ///< number of times that tracking restarted with corrected sensor times
   std::int64_t recorded_used = 0;  ///< frames whose motion recorded poses constrained; see MotionPrior
   std::int64_t recorded_contradicted = 0;  ///< frames whose depth contradicted the recorded motion
+  /// Frames whose poses are not trusted because no camera moves so; see distrust_impossible_motion().
+  std::int64_t impossible_motion = 0;
   double recorded_sigma_m = 0.0;           ///< estimated noise of a recorded pose, see MotionPrior::sigma_m
   std::int64_t ghost_voxels = 0;           ///< surface voxels removed by ghost removal
   /// Frames of the interrupted pass (tracking or fusion) that were finished at the checkpoint and are not

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <set>
 #include <utility>
 
 #include "mapping/coverage/observed_area.hpp"
@@ -10,6 +11,7 @@
 #include "mapping/map/registration.hpp"
 #include "mapping/map/surface_points.hpp"
 #include "mapping/octree/prepared_frame.hpp"
+#include "mapping/odometry/impossible_motion.hpp"
 #include "mapping/odometry/odometry_snapshot.hpp"
 #include "mapping/revision/ghost_removal.hpp"
 #include "mapping/scan_memory.hpp"
@@ -162,6 +164,14 @@ TrajectoryEstimate finished_trajectory(const PrescanWork& work, TrackingPass& pa
   pass.counts.recorded_contradicted = pass.odometry.state().prior.contradicted;
   pass.counts.recorded_sigma_m = pass.odometry.state().prior.sigma_m;
   found.keyframe_database = pass.odometry.take_keyframe_database();
+  if (work.config.poses != PoseOrigin::kRecorded) {
+    pass.counts.impossible_motion = distrust_impossible_motion(found.frames);
+    std::set<std::int64_t> distrusted;
+    for (const TrackedFrame& frame : found.frames)
+      if (!frame.trusted) distrusted.insert(frame.frame_index);
+    std::erase_if(found.keyframe_database.keyframes,
+                  [&](const MapKeyframe& keyframe) { return distrusted.contains(keyframe.frame_index); });
+  }
   int main_part = 0;
   found.parts = work.times.timed("join", [&] {
     return join_parts(found.frames, found.keyframe_database, pass.odometry.state().located, main_part);

@@ -21,7 +21,7 @@ void serialize(Archive& archive, Ref<Archive, PrescanCounts> counts) {
   for (auto* const count :
        {&counts.frames_read, &counts.frames_skipped, &counts.frames_tracked, &counts.frames_fused,
         &counts.frames_lost, &counts.keyframes, &counts.loops_found, &counts.restarts, &counts.ghost_voxels,
-        &counts.recorded_used, &counts.recorded_contradicted}) {
+        &counts.recorded_used, &counts.recorded_contradicted, &counts.impossible_motion}) {
     archive(*count);
     if constexpr (Archive::kReads) {
       if (*count < 0) archive.fail("is damaged: a count is negative");
@@ -77,7 +77,7 @@ constexpr const char* kOdometry = "odometry";
 constexpr const char* kOctree = "octree.bin";
 constexpr const char* kPlaces = "places.bin";
 constexpr std::string_view kMagic = "RRPRSCAN";
-constexpr std::uint32_t kVersion = 7;
+constexpr std::uint32_t kVersion = 8;
 
 }  // namespace
 

@@ -151,6 +151,7 @@ py::dict dict_of(const PrescanCounts& counts) {
   dict["loops_found"] = counts.loops_found;
   dict["recorded_used"] = counts.recorded_used;
   dict["recorded_contradicted"] = counts.recorded_contradicted;
+  dict["frames_impossible_motion"] = counts.impossible_motion;
   dict["ghost_voxels"] = counts.ghost_voxels;
   dict["stopped_for_memory"] = counts.stopped_for_memory;
   return dict;

@@ -40,6 +40,7 @@ nlohmann::json results_of(const PrescanResult& scanned) {
        {{"used", counts.recorded_used},
         {"contradicted", counts.recorded_contradicted},
         {"sigma_m", counts.recorded_sigma_m}}},
+      {"frames_impossible_motion", counts.impossible_motion},
       {"ghost_voxels", counts.ghost_voxels},
       {"frames_resumed", counts.frames_resumed},
       {"stopped_for_memory", counts.stopped_for_memory},
@@ -144,6 +145,15 @@ void print_summary(const PrescanOptions& options, const PrescanResult& scanned,
     }
     if (scanned.lost.size() > kShown) std::printf(" and %zu more spans", scanned.lost.size() - kShown);
     std::printf("\n");
+    constexpr std::int64_t kWorthAdvice = 20;  // at least one frame in so many
+    if (counts.impossible_motion > 0)
+      std::printf(
+          "in %lld of these the camera would have jumped, so depth does not constrain their poses%s\n",
+          static_cast<long long>(counts.impossible_motion),
+          counts.impossible_motion * kWorthAdvice < counts.frames_read
+              ? ""
+              : ". Scan there again, slowly, with edges and corners nearer than 4 m in view, and add "
+                "it with --resume");
   }
   print_parts(options, scanned);
   if (counts.frames_skipped > 0) {

@@ -50,7 +50,7 @@ FrameUse use_of(const SessionRoom& room, const FrameScene& scene, bool has_map,
 
 enum class FrameStatus {
   kDone,
-  /// The camera's pose is a guess that nothing has verified for more than 0.15 s (TrackStatus::kUncertain).
+  /// The camera's pose is a guess that nothing has verified for a while (TrackStatus::kUncertain).
   /// Objects stand still; the picture shows them from the guessed pose.
   kUncertain,
   kNotLocated,  ///< no camera pose; objects do not move, and the picture does not show them

@@ -18,8 +18,8 @@ enum class TrackStatus {
   /// The image disagrees with the references at the aligned pose, or the correction exceeds
   /// AlignConfig::max_correction_m or max_correction_rad. The returned pose is the guess.
   kDiverged,
-  /// A pose that nothing has verified for more than 0.15 s: directions that depth leaves unconstrained were
-  /// only predicted. Returned by locate(), not by align().
+  /// A pose that nothing has verified for more than 0.15 s, or whose standard deviation has exceeded 5 cm:
+  /// directions that depth leaves unconstrained were only predicted. Returned by locate(), not by align().
   kUncertain,
 };
 std::string_view to_string(TrackStatus status);

@@ -419,20 +419,31 @@ Tracking prove(Locator& locator, const Frame& frame, const KeyframeDatabase& key
   return proven;
 }
 
+/// Adds the uncertainty of predicted directions: a hand moves by up to 0.5 m/s.
+void add_motion_uncertainty(const Locator& locator, Tracking& tracking) {
+  constexpr double kSpeed_mps = 0.5, kLeast_m = 0.01;
+  const double sigma_m = kLeast_m + kSpeed_mps * locator.carried_s;
+  tracking.information += prior_information(sigma_m, Eigen::Isometry3d::Identity());
+}
+
 /// Returns the followed pose if it counts as located, a proven pose near it, or an uncertain one. Directions
-/// that depth does not constrain are predicted for kLongest_s at most. Then a pose must be proven at or near
-/// the predicted one, or found by a search. If the depth is bent, patches suffice, since the camera stands.
+/// that depth does not constrain are predicted for kLongest_s at most, and while the position's standard
+/// deviation is at most kMost_m. Then a pose must be proven at or near the predicted one, or found by a
+/// search. If the depth is bent, patches suffice, since the camera stands.
 Tracking verified(Locator& locator, const Frame& frame, const KeyframeDatabase& keyframe_database,
                   double dt_s, const ExpectedDepth& expected_depth, const FollowedPose& followed) {
   Tracking tracking = followed.tracking;
-  constexpr double kLongest_s = 0.15;
+  constexpr double kLongest_s = 0.15, kMost_m = 0.05;
   constexpr int kEvery = 3, kSearchEvery = 9;  // frames between two proofs, and between two searches
   if (tracking.status == TrackStatus::kTracked && !locator.is_uncertain) {
     locator.carried_s = 0.0;
     return tracking;
   }
   locator.carried_s += dt_s;
-  if (!locator.is_uncertain && locator.carried_s <= kLongest_s) return tracking;
+  Tracking predicted = tracking;
+  add_motion_uncertainty(locator, predicted);
+  if (!locator.is_uncertain && locator.carried_s <= kLongest_s && uncertainty_m(predicted) <= kMost_m)
+    return tracking;
   Tracking proven;
   if (followed.is_bent && is_verified_by_appearance(locator, frame, keyframe_database, tracking)) {
     proven = tracking;
@@ -480,13 +491,6 @@ Eigen::Isometry3d next_motion(const Locator& locator, const Tracking& tracking, 
   const Eigen::Isometry3d T_last_now = locator.T_world_camera->inverse() * tracking.T_world_camera;
   if (!has_pose(tracking)) return expected_motion(tracking, T_last_now);
   return retract(0.5 * (local(T_last_now) + local(locator.T_last_now)));
-}
-
-/// Adds the uncertainty of predicted directions: a hand moves by up to 0.5 m/s.
-void add_motion_uncertainty(const Locator& locator, Tracking& tracking) {
-  constexpr double kSpeed_mps = 0.5, kLeast_m = 0.01;
-  const double sigma_m = kLeast_m + kSpeed_mps * locator.carried_s;
-  tracking.information += prior_information(sigma_m, Eigen::Isometry3d::Identity());
 }
 
 }  // namespace

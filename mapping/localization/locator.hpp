@@ -60,7 +60,8 @@ struct Locator {
   int stood_frames = 0;     ///< consecutive frames whose images show that the camera stands
   /// Time for which unconstrained directions were only predicted, s.
   double carried_s = 0.0;
-  /// True after carried_s has exceeded 0.15 s, until a pose is verified.
+  /// True after carried_s has exceeded 0.15 s or the position's standard deviation 5 cm, until a pose is
+  /// verified.
   bool is_uncertain = false;
   int uncertain_frames = 0;   ///< consecutive frames with is_uncertain
   int followed_frames = 0;    ///< number of frames followed so far
@@ -88,10 +89,11 @@ struct Locator {
 /// found by search must be certain (is_certain()) and unambiguous (is_ambiguous()).
 ///
 /// If the status is kDegenerate, the pose equals the prediction in unconstrained directions. After 0.15 s of
-/// such poses the status is kUncertain: the pose is the best guess, and the map is searched until patches or
-/// depth verify a pose. If two images show that the camera stands (is_camera_stationary()), and depth does
-/// not contradict it, the pose stays as it is. A sensor that recalibrates distorts its depth for a moment. If
-/// alignment mistakes the distortion for motion, locate() returns the previous frame's pose with kDegenerate.
+/// such poses, or a standard deviation of 5 cm, the status is kUncertain: the pose is the best guess, and the
+/// map is searched until patches or depth verify a pose. If two images show that the camera stands
+/// (is_camera_stationary()), and depth does not contradict it, the pose stays as it is. A sensor that
+/// recalibrates distorts its depth for a moment. If alignment mistakes the distortion for motion, locate()
+/// returns the previous frame's pose with kDegenerate.
 ///
 /// @param dynamic_mask  empty, or of the depth image's size. Non-zero pixels showed a moving object in the
 ///                      previous frame and are ignored

@@ -263,7 +263,8 @@ TEST(Locator, PassesAShortStretchOfBareWallByItsMotion) {
     Frame frame = mapped.seen_from(passing(i));
     frame.stamp_s = i / 30.0;
     const Tracking found = mapped.find(frame);
-    EXPECT_EQ(found.status, TrackStatus::kDegenerate) << i;
+    // Two standard deviations exceed 10 cm from the fourth frame on.
+    EXPECT_EQ(found.status, i <= 3 ? TrackStatus::kDegenerate : TrackStatus::kUncertain) << i;
     EXPECT_LT(error_m(found, passing(i)), 0.02) << i;
   }
 }
@@ -308,7 +309,7 @@ TEST(Locator, IsUncertainAfterAFewFramesBeforeAWallWithoutMarks) {
   };
   for (int i = 0; i < 12; ++i) {
     const Tracking found = find_at(before_wall(0.3 - 0.02 * i));  // depth does not show this motion
-    EXPECT_EQ(found.status, i < 5 ? TrackStatus::kDegenerate : TrackStatus::kUncertain) << i;
+    EXPECT_EQ(found.status, i < 3 ? TrackStatus::kDegenerate : TrackStatus::kUncertain) << i;
     const PoseSigma sigma = pose_sigma(found);
     EXPECT_GT(sigma.position_m.x(), sigma.position_m.y()) << i;
     if (i > 0) {
