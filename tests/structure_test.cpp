@@ -21,7 +21,7 @@ const std::vector<std::vector<std::string>> kLayers = {
     {"mapping/types"},
     {"mapping/types/codecs"},
     {"mapping/storage"},
-    {"mapping/mesh", "mapping/octree", "mapping/alignment", "radar/geometry", "dynamic/foreground",
+    {"mapping/history", "mapping/mesh", "mapping/octree", "mapping/alignment", "radar/geometry", "dynamic/foreground",
      "dynamic/surface", "app/sources/formats", "app/sources/containers", "app/sources/video",
      "app/sim/solids"},
     {"app/sources/datasets", "app/sim/room"},

@@ -72,6 +72,29 @@ void put_column(std::string& out, const void* items, std::size_t count, std::siz
   std::memcpy(out.data() + sizes_at, sizes.data(), sizeof(sizes));
 }
 
+std::string compress_frame(std::string_view bytes) {
+  constexpr std::size_t kPart_bytes = 1U << 16U;
+  std::string frame;
+  Compressor compressor(bytes.size(), frame);
+  for (; !bytes.empty(); bytes.remove_prefix(std::min(bytes.size(), kPart_bytes)))
+    compressor.add(bytes.substr(0, kPart_bytes));
+  compressor.finish();
+  return frame;
+}
+
+std::optional<UnpackedFrame> unpack_frame(std::string_view packed) {
+  const std::size_t size = ZSTD_findFrameCompressedSize(packed.data(), packed.size());
+  if (ZSTD_isError(size) != 0) return std::nullopt;
+  const unsigned long long bytes = ZSTD_getFrameContentSize(packed.data(), size);
+  if (bytes == ZSTD_CONTENTSIZE_UNKNOWN || bytes == ZSTD_CONTENTSIZE_ERROR ||
+      bytes > (std::uint64_t{64} << 20U) + 1000 * std::uint64_t{size})
+    return std::nullopt;
+  UnpackedFrame frame{std::string(bytes, '\0'), size};
+  const std::size_t unpacked = ZSTD_decompress(frame.bytes.data(), bytes, packed.data(), size);
+  if (ZSTD_isError(unpacked) != 0 || unpacked != bytes) return std::nullopt;
+  return frame;
+}
+
 std::size_t ColumnReader::take_count(std::size_t item_bytes, const char* what,
                                      std::optional<std::size_t> expected) {
   const auto count = in_.number<std::uint64_t>();

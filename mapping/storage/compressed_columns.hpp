@@ -26,6 +26,17 @@ void put_column(std::string& out, const std::vector<Number>& numbers) {
   put_column(out, numbers.data(), numbers.size(), sizeof(Number));
 }
 
+/// Returns bytes as one zstd frame, as columns have it.
+std::string compress_frame(std::string_view bytes);
+
+struct UnpackedFrame {
+  std::string bytes;
+  std::size_t frame_bytes = 0;  ///< size of the frame
+};
+/// Unpacks the zstd frame with which `packed` begins. Returns nullopt if there is none, or it would take more
+/// than 64 MB plus 1,000 times its size.
+std::optional<UnpackedFrame> unpack_frame(std::string_view packed);
+
 /// Returns a difference, which may have wrapped, with its sign as the lowest bit: small differences have
 /// small numbers, so that their high bytes compress well. from_sign_last() is the inverse.
 template <typename Number>

@@ -23,15 +23,18 @@ class Sha256 {
   void add(const char* bytes, std::size_t count) {
     require(EVP_DigestUpdate(context_.get(), bytes, count) == 1);
   }
-  [[nodiscard]] std::string hex() {
-    constexpr const char* kDigits = "0123456789abcdef";
+  [[nodiscard]] std::string bytes() {
     std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
     unsigned length = 0;
     require(EVP_DigestFinal_ex(context_.get(), digest.data(), &length) == 1);
+    return {digest.begin(), digest.begin() + length};
+  }
+  [[nodiscard]] std::string hex() {
+    constexpr const char* kDigits = "0123456789abcdef";
     std::string hex;
-    for (unsigned i = 0; i < length; ++i) {
-      hex += kDigits[digest[i] >> 4U];
-      hex += kDigits[digest[i] & 15U];
+    for (const char c : bytes()) {
+      hex += kDigits[static_cast<unsigned char>(c) >> 4U];
+      hex += kDigits[static_cast<unsigned char>(c) & 15U];
     }
     return hex;
   }
@@ -51,6 +54,12 @@ std::string sha256_of(std::string_view bytes) {
   Sha256 sum("a text");
   sum.add(bytes.data(), bytes.size());
   return sum.hex();
+}
+
+std::string sha256_bytes_of(std::string_view bytes) {
+  Sha256 sum("a text");
+  sum.add(bytes.data(), bytes.size());
+  return sum.bytes();
 }
 
 std::string sha256_of_file(const std::filesystem::path& path) {
