@@ -124,7 +124,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libroomradar-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 # zlib1g-dev: assimp's targets link it, libassimp-dev does not depend on it.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-  "libassimp-dev, libbz2-dev, libceres-dev, libdraco-dev, libegl-dev, libeigen3-dev, libjpeg62-turbo-dev, liblz4-dev, libmeshoptimizer-dev, liboctomap-dev, libopengl-dev, libpng-dev, libsqlite3-dev, libssl-dev, libstb-dev, libtbb-dev, libwebp-dev, libzstd-dev, nlohmann-json3-dev, zlib1g-dev")
+  "libassimp-dev, libbz2-dev, libceres-dev, libdraco-dev, libegl-dev, libeigen3-dev, libjpeg62-turbo-dev, liblz4-dev, libmeshoptimizer-dev, libminizip-dev, liboctomap-dev, libopengl-dev, libpng-dev, libsqlite3-dev, libssl-dev, libstb-dev, libtbb-dev, libwebp-dev, libzstd-dev, nlohmann-json3-dev, zlib1g-dev")
 foreach(module ${opencv_modules})
   string(APPEND CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS ", libopencv-${module}${opencv_abi}")
 endforeach()

@@ -1,8 +1,6 @@
 // map_tasks.cpp: each task checks first, and changes nothing if a check fails.
 #include "app/start/map_tasks.hpp"
 
-#include <unistd.h>
-
 #include <cstdio>
 
 #include "app/cli/registered_maps.hpp"
@@ -10,6 +8,7 @@
 #include "app/start/map_list.hpp"
 #include "mapping/map/map_export.hpp"
 #include "mapping/map/map_folder.hpp"
+#include "mapping/storage/atomic_folder.hpp"
 #include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 
@@ -36,15 +35,6 @@ void move_folder(const fs::path& from, const fs::path& to) {
   fs::rename(from, to, fault);
   if (fault)
     throw Error(from.string() + ": cannot be renamed to " + to.string() + ": " + system_reason(fault));
-}
-
-/// Moves the folder aside first, so that an interruption leaves no half of a map under its name.
-void remove_folder(const fs::path& folder) {
-  const fs::path aside = folder.string() + ".deleted-" + std::to_string(getpid());
-  move_folder(folder, aside);
-  std::error_code fault;
-  fs::remove_all(aside, fault);
-  if (fault) throw Error(aside.string() + ": is left of the deleted map: " + system_reason(fault));
 }
 
 std::string sentence_of(const Change& change) {
@@ -92,9 +82,9 @@ void delete_map(const fs::path& map) {
     if (fs::is_symlink(map, ignored))
       throw Error(map.string() + ": is a link to a map; delete the map itself, or the link by hand");
     require_replaceable(map);
-    remove_folder(map);
+    remove_whole_folder(map);
   }
-  if (has_unfinished) remove_folder(unfinished);
+  if (has_unfinished) remove_whole_folder(unfinished);
 }
 
 fs::path export_beside(const fs::path& map, const std::string& extension) {

@@ -25,6 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kPartial = "partial";
 constexpr const char* kBefore = "before";
+constexpr const char* kDeleted = "deleted";
 
 [[noreturn]] void fail(const fs::path& path, const std::string& what, int reason) {
   throw Error(path.string() + ": " + what + ": " + system_reason(reason) +
@@ -66,6 +67,15 @@ void clear_abandoned(const fs::path& target) {
     for (const fs::path& folder : abandoned(target, word)) fs::remove_all(folder, ignored);
 }
 
+/// Puts the list of names in the target's parent folder on disk if the file system can. The target is in
+/// place already: a power failure could lose the new name, not the folder.
+void sync_names_beside(const fs::path& target) {
+  try {
+    sync_to_disk(parent_of(target));
+  } catch (const Error&) {
+  }
+}
+
 }  // namespace
 
 void sync_to_disk(const fs::path& path) {
@@ -97,10 +107,46 @@ void put_in_place(const fs::path& ready, const fs::path& target) {
     fs::remove_all(aside, ignored);
   }
   fs::remove_all(ready, ignored);  // the old target, if names were exchanged
-  try {
-    sync_to_disk(parent_of(target));
-  } catch (const Error&) {  // already in place: a power failure now could lose the new name, not the map
+  sync_names_beside(target);
+}
+
+bool move_to_free_place(const fs::path& from, const fs::path& to) {
+  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) != 0) {
+    int reason = errno;
+    if (reason == EINVAL || reason == ENOSYS) {  // this file system cannot refuse a name that is taken
+      if (fs::exists(fs::symlink_status(to)))
+        reason = EEXIST;
+      else
+        reason = ::rename(from.c_str(), to.c_str()) == 0 ? 0 : errno;
+    }
+    if (reason == EXDEV) return false;
+    if (reason == EEXIST || reason == ENOTEMPTY)
+      throw Error(to.string() + ": exists already; choose another name");
+    if (reason != 0) fail(to, from.string() + " cannot be moved there", reason);
   }
+  sync_names_beside(to);
+  sync_names_beside(from);
+  return true;
+}
+
+void remove_whole_folder(const fs::path& folder) {
+  const fs::path aside = beside(folder, kDeleted);
+  if (::rename(folder.c_str(), aside.c_str()) != 0) fail(folder, "cannot be removed", errno);
+  std::error_code fault;
+  fs::remove_all(aside, fault);
+  if (fault) throw Error(aside.string() + ": is left of the deleted folder: " + system_reason(fault));
+  sync_names_beside(folder);
+}
+
+bool is_transient(const std::string& name) {
+  for (const char* word : {kPartial, kDeleted}) {
+    const std::string infix = std::string(".") + word + "-";
+    const std::size_t at = name.rfind(infix);
+    if (at == std::string::npos || at == 0) continue;
+    const std::string owner = name.substr(at + infix.size());
+    if (!owner.empty() && owner.find_first_not_of("0123456789") == std::string::npos) return true;
+  }
+  return false;
 }
 
 AtomicFolder::AtomicFolder(const fs::path& target) : target_(target), partial_(beside(target, kPartial)) {
@@ -116,10 +162,19 @@ AtomicFolder::~AtomicFolder() {
   fs::remove_all(partial_, ignored);
 }
 
-void AtomicFolder::commit() {
+void AtomicFolder::sync() const {
   for (const fs::directory_entry& entry : fs::directory_iterator(partial_)) sync_to_disk(entry.path());
   sync_to_disk(partial_);
+}
+
+void AtomicFolder::commit() {
+  sync();
   put_in_place(partial_, target_);
+}
+
+void AtomicFolder::commit_as_new() {
+  sync();
+  if (!move_to_free_place(partial_, target_)) fail(target_, "cannot be moved into place", EXDEV);
 }
 
 fs::path interrupted_replacement_of(const fs::path& target) {

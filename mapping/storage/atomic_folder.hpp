@@ -13,6 +13,19 @@ void sync_to_disk(const std::filesystem::path& path);
 /// in `ready`. Throws Error, with both unchanged, if the file system fails.
 void put_in_place(const std::filesystem::path& ready, const std::filesystem::path& target);
 
+/// Renames the folder `from` to `to` atomically if nothing has that name. Returns false, with nothing
+/// changed, if the two are on different file systems. Throws Error, with nothing changed, if `to` exists or
+/// the system refuses.
+bool move_to_free_place(const std::filesystem::path& from, const std::filesystem::path& to);
+
+/// Removes a folder and its contents. The folder is renamed to folder.deleted-PID first, so that an
+/// interruption leaves no part of it under its name. Throws Error if the system refuses.
+void remove_whole_folder(const std::filesystem::path& folder);
+
+/// Returns true for the name of a file or folder that is incomplete, or is being removed: NAME.partial-PID,
+/// NAME.deleted-PID.
+[[nodiscard]] bool is_transient(const std::string& name);
+
 /// New folder target.partial-PID, in the parent folder of `target`. The destructor removes the folder unless
 /// commit() succeeded.
 class AtomicFolder {
@@ -32,7 +45,12 @@ class AtomicFolder {
   /// fails.
   void commit();
 
+  /// Like commit(), but throws Error, with `target` unchanged, if `target` exists.
+  void commit_as_new();
+
  private:
+  void sync() const;
+
   std::filesystem::path target_;
   std::filesystem::path partial_;
 };
