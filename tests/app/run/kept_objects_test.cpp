@@ -151,9 +151,8 @@ TEST_F(KeptObjects, SurviveAnExtensionOfTheMap) {
 
 TEST_F(KeptObjects, AScanThatReplacesTheMapSaysThatTheyGo) {
   ASSERT_EQ(play(kView), 0) << said();
-  ASSERT_EQ(program({"prescan", kScan, "--map", map(), "--resolution", "0.04"}), 0) << said();
-  EXPECT_NE(said().find("this scan replaces the map, and 1 object that stood in it"), std::string::npos)
-      << said();
+  ASSERT_EQ(program({"prescan", kScan, "--map", map(), "--resolution", "0.04", "--replace"}), 0) << said();
+  EXPECT_NE(said().find("without 1 object that stood in it"), std::string::npos) << said();
   EXPECT_TRUE(read_kept_objects(objects()).empty());
 }
 
@@ -222,6 +221,35 @@ TEST_F(KeptObjects, ARecordedRunReplaysWithThem) {
   EXPECT_EQ(replay.at("different"), 0);
   EXPECT_EQ(replay.at("same"), replay.at("recorded"));
   EXPECT_FALSE(fs::exists(objects()));
+}
+
+TEST_F(KeptObjects, GoWhereTheThingOnWhichTheyStoodWasCarried) {
+  const std::string room = at("random").string(), day = "sim:random?seed=1&width=160";
+  const std::vector<std::string> how = {"--map", room, "--poses", "recorded"};
+  const auto with_map = [&](std::vector<std::string> words) {
+    words.insert(words.end(), how.begin(), how.end());
+    return program(words);
+  };
+  ASSERT_EQ(with_map({"prescan", day, "--texture", "off", "--resolution", "0.02"}), 0) << said();
+  // One on the sofa, one on the floor.
+  std::ofstream(at("script.txt")) << "frame 0 add pot teapot size 0.12\nframe 0 drop pot at -0.2 -0.25 0.47\n"
+                                     "frame 0 add far teapot size 0.12\nframe 0 drop far at 0.9 0.9 0.01\n";
+  ASSERT_EQ(with_map({"run", day + "&frames=60", "--script", at("script.txt")}), 0) << said();
+  const std::vector<KeptObject> before = read_kept_objects(fs::path(room) / "objects");
+  ASSERT_EQ(before.size(), 2U) << said();
+  const std::string other = day + "&moved=0.4";
+  ASSERT_EQ(with_map({"prescan", other, "--texture", "off", "--resume"}), 0) << said();
+  EXPECT_NE(said().find("pot: moved by "), std::string::npos) << said();
+  EXPECT_EQ(said().find("far: "), std::string::npos) << said();
+  ASSERT_EQ(with_map({"run", other + "&frames=60"}), 0) << said();
+  const std::vector<KeptObject> after = read_kept_objects(fs::path(room) / "objects");
+  ASSERT_EQ(after.size(), 2U);
+  const Eigen::Vector3d shift_m =
+      after[0].T_world_object.translation() - before[0].T_world_object.translation();
+  EXPECT_GT(shift_m.head<2>().norm(), 0.3);
+  EXPECT_LT(std::abs(shift_m.z()), 0.01);  // at the height of the seat
+  EXPECT_LT((after[1].T_world_object.translation() - before[1].T_world_object.translation()).norm(), 1e-3);
+  fs::remove_all(room);
 }
 
 }  // namespace
