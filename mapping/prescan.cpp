@@ -15,6 +15,7 @@
 #include "mapping/alignment/rolling_shutter.hpp"
 #include "mapping/coverage/coverage.hpp"
 #include "mapping/deskewed_source.hpp"
+#include "mapping/history/visits.hpp"
 #include "mapping/map/changed_map.hpp"
 #include "mapping/map/map_merge.hpp"
 #include "mapping/map/map_writer.hpp"
@@ -166,15 +167,16 @@ std::future<TimedCoverage> begin_coverage(const StaticMap& octree, const Mesh& m
 MapInfo describe_map(const PrescanWork& work, const FusionPass& pass,
                      const std::vector<TimedPose>& trajectory) {
   MapInfo info;
-  info.source = work.source->name();
+  info.source = without_folders(work.source->name());
+  info.sessions = {{info.source, source_id_of(work.source->name()), time_of_visit(), pass.counts.frames_read,
+                    static_cast<std::int64_t>(pass.fused.size())}};
   info.frames_read = pass.counts.frames_read;
   info.frames_fused = static_cast<std::int64_t>(pass.fused.size());
   info.up_source = to_string(pass.found.up.source);
   info.settings = {{"resolution_m", format_fixed(work.config.resolution_m, 6)},
                    {kDeviationSetting, format_number(work.config.surface.max_deviation_m)},
                    {kPosesSetting, std::string(to_string(work.config.poses))}};
-  if (pass.counts.stopped_for_memory || pass.stopped_for_memory)
-    info.settings[kStoppedSetting] = work.source->name();
+  if (pass.counts.stopped_for_memory || pass.stopped_for_memory) info.settings[kStoppedSetting] = info.source;
   if (work.config.fuse_every > 1) info.settings["fuse_every"] = std::to_string(work.config.fuse_every);
   if (work.config.hold_out > 0) info.settings["hold_out"] = std::to_string(work.config.hold_out);
   if (work.config.poses == PoseOrigin::kRecorded)

@@ -152,10 +152,26 @@ void add_command_of_both(CLI::App& map, const char* name, const char* descriptio
   });
 }
 
+/// Adds the `map` commands that treat a map as a folder or file.
+void add_housekeeping_commands(CLI::App& map, Parsing& parsing) {
+  const Commands& here = parsing.here;
+  add_command(map, "list", "list the maps in a folder; exit status 1 if one is damaged", parsing,
+              here.map_list);
+  add_command(map, "copy", "copy a map with all that is in its folder", parsing, here.map_copy);
+  add_command(map, "rename", "give a map another name or place, also out of the trash", parsing,
+              here.map_rename);
+  add_command(map, "delete", "move a map to the trash, or delete it for good", parsing, here.map_delete);
+  add_command(map, "pack", "write a map as one file, to send or to keep", parsing, here.map_pack);
+  add_command(map, "unpack", "make a map from a file that `map pack` wrote; the file is checked first",
+              parsing, here.map_unpack);
+}
+
 void add_map_commands(CLI::App& app, Parsing& parsing) {
   const Commands& here = parsing.here;
-  CLI::App& map = *app.add_subcommand(
-      "map", "describe, verify, export, merge or compare saved maps; the objects in them");
+  CLI::App& map =
+      *app.add_subcommand("map",
+                          "describe, verify, export, merge or compare saved maps; the objects in them;\n"
+                          "list, copy, rename, delete, pack or unpack maps");
   map.require_subcommand(1);
   add_command_of_both(map, "info", "describe a map", parsing, here.map_info, here.building_info);
   add_command_of_both(map, "verify", "check every file against its checksum; exit status 1 if one differs",
@@ -164,6 +180,14 @@ void add_map_commands(CLI::App& app, Parsing& parsing) {
                       here.map_export, here.building_export);
   add_command(map, "objects", "list, remove or rename the virtual objects that stay in a room", parsing,
               here.map_objects);
+  add_command(map, "log", "list the revisions of a map: when, by which command, and what changed", parsing,
+              here.map_log);
+  add_command(map, "restore", "make an earlier revision of a map its present state", parsing,
+              here.map_restore);
+  add_command(map, "undo", "go back to the revision from which the map's present state was made", parsing,
+              here.map_undo);
+  add_command(map, "prune", "remove the oldest revisions of a map", parsing, here.map_prune);
+  add_housekeeping_commands(map, parsing);
   add_command(
       map, "merge",
       "merge two overlapping maps of one room; B is registered to A by common views and by surfaces,\n"

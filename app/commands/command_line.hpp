@@ -26,6 +26,16 @@ struct Commands {
   int (*map_verify)(const MapVerifyOptions& options) = nullptr;
   int (*map_export)(const MapExportOptions& options) = nullptr;
   int (*map_objects)(const MapObjectsOptions& options) = nullptr;
+  int (*map_log)(const MapLogOptions& options) = nullptr;
+  int (*map_restore)(const MapRestoreOptions& options) = nullptr;
+  int (*map_undo)(const MapUndoOptions& options) = nullptr;
+  int (*map_prune)(const MapPruneOptions& options) = nullptr;
+  int (*map_list)(const MapListOptions& options) = nullptr;
+  int (*map_copy)(const MapCopyOptions& options) = nullptr;
+  int (*map_rename)(const MapRenameOptions& options) = nullptr;
+  int (*map_delete)(const MapDeleteOptions& options) = nullptr;
+  int (*map_pack)(const MapPackOptions& options) = nullptr;
+  int (*map_unpack)(const MapUnpackOptions& options) = nullptr;
   int (*map_merge)(const MapMergeOptions& options) = nullptr;
   int (*map_diff)(const MapDiffOptions& options) = nullptr;
   int (*check)(const CheckOptions& options) = nullptr;

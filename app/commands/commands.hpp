@@ -44,6 +44,31 @@ int run(const MapExportOptions& options);
 /// Lists, removes or renames the objects that stay in the room. Throws Error if there is no object of a name.
 int run(const MapObjectsOptions& options);
 
+/// Lists the revisions of a map.
+int run(const MapLogOptions& options);
+/// Makes an earlier revision the map's present state.
+int run(const MapRestoreOptions& options);
+/// Goes back to the revision from which the present state was made.
+int run(const MapUndoOptions& options);
+/// Removes the oldest revisions.
+int run(const MapPruneOptions& options);
+// roomradar map list|copy|rename|delete|pack|unpack: maps as folders and files. Each function returns the
+// exit status, and throws Error, with the maps as they were, if a file cannot be read or written, a folder is
+// not a map, or the new place is taken.
+
+/// Prints a line per map in a folder. Returns 1 if one is damaged.
+int run(const MapListOptions& options);
+/// Copies a map.
+int run(const MapCopyOptions& options);
+/// Gives a map another path.
+int run(const MapRenameOptions& options);
+/// Moves a map to the trash, or deletes it for good.
+int run(const MapDeleteOptions& options);
+/// Writes a map as one file.
+int run(const MapPackOptions& options);
+/// Makes a map from such a file.
+int run(const MapUnpackOptions& options);
+
 // roomradar map merge|diff: merges or compares two maps of one room. Both functions return the exit status 0,
 // and throw Error if a file cannot be read or written, or if the maps cannot be registered reliably.
 

@@ -21,6 +21,7 @@
 #include "mapping/map/map_export.hpp"
 #include "mapping/map/map_files.hpp"
 #include "mapping/map/map_folder.hpp"
+#include "mapping/map/map_history.hpp"
 #include "mapping/map/map_info.hpp"
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/surface/unknown/unknown_surface.hpp"
@@ -74,18 +75,19 @@ void require_no_recording(const std::string& path) {
                 "` says what it holds, and `roomradar prescan` makes a map of it");
 }
 
-void export_page(const MapExportOptions& options) {
+void export_page(const MapExportOptions& options, const std::filesystem::path& map) {
   require_outside_maps(options.path);
   require_writable(options.path);
-  write_map_page(load_map(options.map), options.map, options.path);
+  write_map_page(load_map(map), options.map, options.path);
 }
 
 }  // namespace
 
 int run(const MapInfoOptions& options) {
   require_no_recording(options.map);
-  const MapInfo info = load_map_info(options.map);
-  const Mesh mesh = load_map_mesh(options.map);
+  const OpenedMap opened(options.map);
+  const MapInfo info = load_map_info(opened.folder());
+  const Mesh mesh = load_map_mesh(opened.folder());
   const std::vector<LevelSurface> surfaces = level_surfaces(mesh);
   if (options.json)
     std::printf("%s\n", json_of(info, surfaces, mesh).dump(2).c_str());
@@ -105,16 +107,17 @@ int run(const MapVerifyOptions& options) {
 
 int run(const MapExportOptions& options) {
   require_no_recording(options.map);
+  const OpenedMap opened(options.map);
   if (is_page(options.path)) {
     if (options.unknown)
       throw Error(options.path + ": --unknown writes a mesh; give a .ply, .obj, .stl or .glb file");
-    export_page(options);
+    export_page(options, opened.folder());
   } else if (options.unknown) {
     require_outside_maps(options.path);
-    const SavedMap map = load_map(options.map);
+    const SavedMap map = load_map(opened.folder());
     write_mesh(unknown_surface(map.octree.load(), map.mesh).mesh_world, options.path);
   } else {
-    export_map(options.map, options.path);
+    export_map(opened.folder(), options.path);
   }
   std::printf("%s written\n", options.path.c_str());
   return 0;

@@ -16,8 +16,10 @@
 #include "app/cli/input_lines.hpp"
 #include "app/cli/interrupt.hpp"
 #include "app/cli/report.hpp"
+#include "app/cli/shell_line.hpp"
 #include "app/evaluation/held_out.hpp"
 #include "app/objects/kept_objects.hpp"
+#include "app/objects/moved_supports.hpp"
 #include "app/quality/quality_json.hpp"
 #include "app/scan/controlled_source.hpp"
 #include "app/scan/live/next_view.hpp"
@@ -26,6 +28,7 @@
 #include "app/scan/scan_progress.hpp"
 #include "app/window/scan/scan_window.hpp"
 #include "mapping/deskewed_source.hpp"
+#include "mapping/history/visits.hpp"
 #include "mapping/map/map_files.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/map/map_writer.hpp"
@@ -117,6 +120,7 @@ TimedScan scan(const PrescanOptions& options, const PrescanConfig& config, ScanS
       // On a terminal the progress line has no line end.
       std::fprintf(stderr, "%sroomradar: %s\n", isatty(STDERR_FILENO) != 0 ? "\n" : "", sentence.c_str());
     });
+  const bool extends = start.map.has_value();
   ScanProgress progress(options, start, config, window);
   double last_frame_s = 0.0;
   PrescanResult scanned = or_say_what_is_kept(options, start, [&] {
@@ -130,6 +134,10 @@ TimedScan scan(const PrescanOptions& options, const PrescanConfig& config, ScanS
   report.frames_read = scanned.counts.frames_read;
   report.frames_skipped = scanned.counts.frames_skipped;
   report.results.update(results_of(scanned));
+  const char* const command = extends           ? "prescan --resume"
+                              : options.replace ? "prescan --replace"
+                                                : "prescan";
+  scanned.map.made = {command, without_folders(options.source), {}};
   return {std::move(scanned), last_frame_s};
 }
 
@@ -182,8 +190,7 @@ std::optional<NextView> first_view_of(const PrescanOptions& options) {
   return view_of(options.look_at->point_world, options.look_at->viewpoint_world, Eigen::Vector3d::UnitZ());
 }
 
-/// Says that objects go with the map that a scan without --resume replaces. A list that cannot be read counts
-/// as objects.
+/// Says that objects go with the map that a scan replaces. A list that cannot be read counts as objects.
 void announce_lost_objects(const PrescanOptions& options) {
   const std::filesystem::path folder = std::filesystem::path(options.map) / kMapObjectsFolder;
   std::string objects = "the objects";
@@ -195,9 +202,45 @@ void announce_lost_objects(const PrescanOptions& options) {
   }
   std::fprintf(
       stderr,
-      "roomradar: %s: this scan replaces the map, and %s that stood in it; Ctrl-C now keeps both, and "
-      "--resume extends the map\n",
+      "roomradar: %s: this scan replaces the map; the present one stays as an earlier revision, without "
+      "%s that stood in it; Ctrl-C now keeps both\n",
       options.map.c_str(), objects.c_str());
+}
+
+/// Throws Error if a scan without --resume and --replace would replace a map.
+void require_replaceable(const PrescanOptions& options) {
+  std::error_code ignored;
+  if (options.resume || options.replace ||
+      !std::filesystem::exists(std::filesystem::path(options.map) / kMapInfoFile, ignored))
+    return;
+  throw Error(
+      options.map +
+      ": is a map already. Extend it by this scan with --resume, replace it with --replace (it stays as an "
+      "earlier revision, see `" +
+      shell_line({"roomradar", "map", "log", options.map}) + "`), or name another map");
+}
+
+/// Moves the objects in the room that stood on something that was carried elsewhere since the map was made,
+/// and says so. The objects are in the saved map.
+void follow_moved_supports(const PrescanOptions& options, const StaticMap& before, const StaticMap& after) {
+  const std::filesystem::path folder = std::filesystem::path(options.map) / kMapObjectsFolder;
+  std::vector<KeptObject> objects = read_kept_objects(folder);
+  const std::vector<SupportChange> changes = roomradar::follow_moved_supports(before, after, folder, objects);
+  if (std::any_of(changes.begin(), changes.end(), [](const SupportChange& each) { return each.was_moved; }))
+    write_kept_objects(folder, objects);
+  for (const SupportChange& change : changes) {
+    if (change.was_moved)
+      std::printf("%s: moved by %.2f m and turned by %.0f degrees with what it stands on\n",
+                  change.name.c_str(), change.moved_m, change.turned_deg);
+    else
+      std::printf("%s: what it stood on is gone; it falls in the next run\n", change.name.c_str());
+  }
+}
+
+/// Returns the octree of the map before this scan if objects stand in the room; nullopt else.
+std::optional<StaticMap> octree_under_objects(const PrescanOptions& options) {
+  if (read_kept_objects(std::filesystem::path(options.map) / kMapObjectsFolder).empty()) return std::nullopt;
+  return load_map_octree(options.map);
 }
 
 /// Scans and saves. Returns the exit status.
@@ -241,7 +284,12 @@ int scan_and_save(const PrescanOptions& options, ScanChannel* channel) {
   }
   lines.say();
   report.results["input"] = to_json(start.input->decisions());
-  or_say_what_is_kept(options, start, [&] { report.times.timed("save", [&] { writer.commit(scanned.map); }); });
+  const std::optional<StaticMap> before = extends ? octree_under_objects(options) : std::nullopt;
+  or_say_what_is_kept(options, start,
+                      [&] { report.times.timed("save", [&] { writer.commit(scanned.map); }); });
+  if (before)
+    report.times.timed("objects",
+                       [&] { follow_moved_supports(options, *before, load_map_octree(options.map)); });
   report.results["ready_after_s"] = report.seconds() - timed.last_frame_s;
 
   Interrupt::say_when_ended("");  // the map is saved
@@ -264,6 +312,7 @@ int scan_and_save(const PrescanOptions& options, ScanChannel* channel) {
 
 void require_can_save(const PrescanOptions& options) {
   mmap_large_allocations();
+  require_replaceable(options);
   require_can_become_map(options.map, {options.report, options.trajectory});
   require_writable(options.report);
   require_writable(options.trajectory);

@@ -11,16 +11,23 @@
 #include "app/run/run_loop.hpp"
 #include "app/run/run_results.hpp"
 #include "app/run/run_summary.hpp"
+#include "mapping/history/visits.hpp"
 #include "mapping/map/changed_map.hpp"
+#include "mapping/map/map_history.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
 namespace {
 
 /// Saves the map as changed by the session.
-void save_changed(SavedMap& map, std::size_t changes, const std::string& folder) {
-  save_changed_map(map, changes, folder);
-  std::printf("%s: saved with %zu changes\n", folder.c_str(), changes);
+void save_changed(OpenedRun& run) {
+  const std::vector<CommittedChange>& changes = run.session->committed_changes();
+  run.map.made = {"run", without_folders(run.options.source), {}};
+  for (const CommittedChange& change : changes)
+    run.map.made.changes.push_back(
+        {change.kind == LastingKind::kCame ? "appeared" : "vanished", change.box_world});
+  save_changed_map(run.map, changes.size(), run.options.save_map);
+  std::printf("%s: saved with %zu changes\n", run.options.save_map.c_str(), changes.size());
 }
 
 /// Returns why all objects that a run was to drop or place are still out of the room; empty if one was in it.
@@ -54,8 +61,7 @@ int play(OpenedRun& run) {
   }
   faults.attempt([&] {
     run.session->finish_commits();
-    if (!options.save_map.empty())
-      save_changed(run.map, run.session->committed_changes().size(), options.save_map);
+    if (!options.save_map.empty()) save_changed(run);
   });
   run.report.frames_read = totals.read;
   run.report.frames_skipped = totals.skipped + totals.dropped.count;
@@ -100,16 +106,24 @@ std::optional<PlaceToScan> place_to_scan(const Session& session) {
 
 }  // namespace
 
-int play(const RunOptions& options) { return play(*open_run(options, nullptr)); }
+int play(const RunOptions& options) {
+  const OpenedMap opened(options.map);
+  RunOptions in_folder = options;
+  in_folder.map = opened.folder().string();
+  return play(*open_run(in_folder, nullptr));
+}
 
 PlayResult play_in_window(const RunOptions& options) {
   std::vector<ObjectSource> meshes;
   for (const ObjectOption& object : options.objects)
     if (object.source.mesh != "teapot") meshes.push_back(object.source);
+  const OpenedMap opened(options.map);
+  RunOptions in_folder = options;
+  in_folder.map = opened.folder().string();
   PlayResult result;
   result.window = run_in_window("roomradar - " + options.source, meshes, options.budget_ms, options.ui_scale,
                                 [&](UiChannel& link) {
-                                  const std::unique_ptr<OpenedRun> run = open_run(options, &link);
+                                  const std::unique_ptr<OpenedRun> run = open_run(in_folder, &link);
                                   const int status = play(*run);
                                   if (link.wants_to_scan()) result.look_at = place_to_scan(*run->session);
                                   return status;

@@ -15,6 +15,7 @@
 #include "app/cli/open_source.hpp"
 #include "app/cli/shell_line.hpp"
 #include "app/sources/recordings/spooled_source.hpp"
+#include "mapping/history/visits.hpp"
 #include "mapping/scan_memory.hpp"
 #include "mapping/storage/sha256.hpp"
 #include "mapping/types/system/error.hpp"
@@ -83,7 +84,9 @@ bool is_to_extend(bool resume, const fs::path& folder, const fs::path& map) {
 
 /// Returns true if the map already contains a recording: the scan to resume was complete.
 bool holds(const MapInfo& map, const FrameSource& source) {
-  return ("; " + map.source + "; ").find("; " + source.name() + "; ") != std::string::npos;
+  const std::string id = source_id_of(source.name());
+  return std::any_of(map.sessions.begin(), map.sessions.end(),
+                     [&](const MapSession& session) { return session.source_id == id; });
 }
 
 /// Opens the source, or leaves it null if all its frames are stored, or if it is a disconnected device with
@@ -117,7 +120,7 @@ void end_held_already(const fs::path& map, const fs::path& folder, ScanStart& st
     unfinished.remove();
   }
   const auto stopped = start.map->info.settings.find(kStoppedSetting);
-  if (stopped != start.map->info.settings.end() && stopped->second == start.source->name())
+  if (stopped != start.map->info.settings.end() && stopped->second == without_folders(start.source->name()))
     throw Error(map.string() + ": was stopped by --max-memory before all of " + stopped->second +
                 " was in it; scan it again with more memory or a coarser --resolution: without --resume, "
                 "or as another map");

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <system_error>
 
+#include "mapping/history/visits.hpp"
 #include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/folders.hpp"
@@ -25,6 +26,10 @@ bool is_map_part(const std::string& name) {
          std::find(kMapParts.begin(), kMapParts.end(), name) != kMapParts.end();
 }
 
+bool is_map_entry(const std::string& name) {
+  return name == kMapInfoFile || name == kMapObjectsFolder || is_map_part(name) || name.starts_with("visits");
+}
+
 void require_replaceable(const fs::path& folder) {
   require_outside_maps(folder);
   std::error_code fault;
@@ -40,7 +45,8 @@ void require_replaceable(const fs::path& folder) {
     const std::string name = entry.path().filename().string();
     if (is_litter(name)) continue;
     empty = false;
-    if (name != kMapInfoFile && name != kMapObjectsFolder && !is_map_part(name))
+    if (name != kMapInfoFile && name != kMapObjectsFolder && name != kVisitsLog && name != kVisitsBlocks &&
+        !is_map_part(name))
       refuse(folder, "exists and holds \"" + name +
                          "\", which is not part of a map; choose another name for the map");
   }
@@ -76,7 +82,8 @@ void require_contents_outside_maps(const fs::path& folder) {
 void require_can_become_map(const fs::path& folder, std::initializer_list<fs::path> outputs) {
   const fs::path map = tidy_map_name(folder);
   require_replaceable(map);
-  std::error_code ignored;  // paths that cannot be resolved are rejected when they are written
+  static_cast<void>(read_visits(map));  // throws if the log of its revisions is damaged
+  std::error_code ignored;              // paths that cannot be resolved are rejected when they are written
   const fs::path whole = fs::weakly_canonical(fs::absolute(map), ignored);
   for (const fs::path& output : outputs) {
     if (output.empty()) continue;

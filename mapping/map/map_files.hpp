@@ -32,6 +32,10 @@ inline constexpr const char* kMapObjectsFolder = "objects";
 /// version may contain.
 bool is_map_part(const std::string& name);
 
+/// Returns true for the names of the files and folders that may lie directly in a map's folder: map.json, the
+/// map's parts, objects, and all that begin with "visits".
+bool is_map_entry(const std::string& name);
+
 /// Throws Error unless `folder` is missing, empty, or contains a map and nothing else but litter of desktops
 /// (is_litter()). Also throws if `folder` is directly in a map's folder.
 void require_replaceable(const std::filesystem::path& folder);

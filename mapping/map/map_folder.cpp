@@ -219,6 +219,12 @@ std::vector<std::string> faults_of(const fs::path& folder) {
       if (name == kMapTexturePointsFile) static_cast<void>(read_texture(folder));
     });
   }
+  attempt([&] {
+    RevisionFiles files;
+    for (const auto& [name, file] : info->files) files[name] = {file.bytes, file.sha256, ""};
+    files[kMapInfoFile] = {};
+    for (const std::string& fault : verify_visits(folder, files)) faults.push_back(fault);
+  });
   return faults;
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "mapping/history/visits.hpp"
 #include "mapping/localization/keyframe_database.hpp"
 #include "mapping/map/map_files.hpp"
 #include "mapping/map/map_info.hpp"
@@ -33,6 +34,8 @@ struct SavedMap {
   /// Folder of the objects that are kept in the room, set by load_map(); may not exist. A map that is saved gets
   /// them. Empty: none.
   std::filesystem::path objects_folder{};
+  /// What made the map; the log of its revisions has it when it is saved.
+  VisitNote made{};
   /// Texture of the mesh, or of an earlier mesh (see fits()); null: none.
   LazyPart<std::shared_ptr<const SurfaceTexture>> texture{std::shared_ptr<const SurfaceTexture>()};
 };

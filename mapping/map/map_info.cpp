@@ -6,10 +6,13 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "mapping/history/visits.hpp"
 #include "mapping/map/map_files.hpp"
+#include "mapping/storage/sha256.hpp"
 #include "mapping/types/pose_origin.hpp"
 #include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
@@ -67,6 +70,10 @@ class Fields {
       fail("\"" + std::string(name) + "\" is not a whole number >= 0");
     return value.get<std::uint64_t>();
   }
+  [[nodiscard]] int whole(const char* name) const {
+    if (count(name) > std::numeric_limits<int>::max()) fail("\"" + std::string(name) + "\" is too large");
+    return static_cast<int>(count(name));
+  }
   [[nodiscard]] double number(const char* name) const {
     if (!at(name).is_number() || !std::isfinite(at(name).get<double>()))
       fail("\"" + std::string(name) + "\" is not a number");
@@ -123,7 +130,41 @@ MapFile file(const Fields& fields) {
   return found;
 }
 
+constexpr std::uint64_t kFirstWithIdentity = 5;  // of the format's versions
+
+void read_identity(const Fields& fields, MapInfo& info) {
+  info.id = fields.text("id");
+  info.created = fields.text("created");
+  info.changed = fields.text("changed");
+  info.revision = fields.whole("revision");
+  info.parent_revision = fields.whole("parent_revision");
+  const Json& sessions = fields.at("sessions");
+  if (!sessions.is_array()) fields.fail("\"sessions\" is not a list");
+  for (const Json& one : sessions) {
+    const Fields session(one, "sessions");
+    info.sessions.push_back({session.text("source"), session.text("source_id"), session.text("made_at"),
+                             static_cast<std::int64_t>(session.count("frames_read")),
+                             static_cast<std::int64_t>(session.count("frames_fused"))});
+  }
+}
+
+/// Replaces the full paths of an earlier version by sessions.
+void name_sessions(MapInfo& info) {
+  constexpr std::string_view kBetween = "; ";
+  std::string names;
+  for (std::size_t begin = 0; begin <= info.source.size();) {
+    const std::size_t end = std::min(info.source.find(kBetween, begin), info.source.size());
+    const std::string source = info.source.substr(begin, end - begin);
+    info.sessions.push_back({without_folders(source), source_id_of(source), "", 0, 0});
+    names += std::string(names.empty() ? "" : kBetween) + info.sessions.back().source;
+    begin = end + kBetween.size();
+  }
+  info.source = names;
+}
+
 }  // namespace
+
+std::string source_id_of(const std::string& source) { return sha256_of(source).substr(0, 16); }
 
 bool knows_recorded_world(const MapInfo& info) {
   const auto poses = info.settings.find(kPosesSetting);
@@ -165,6 +206,9 @@ std::string describe(const MapInfo& info) {
   std::array<char, 32> resolution{};
   format_classic(resolution.data(), resolution.size(), "%g m", info.resolution_m);
   line("source", info.source);
+  if (!info.id.empty()) line("map", info.id);
+  if (!info.created.empty()) line("created", info.created);
+  if (!info.changed.empty()) line("changed", info.changed);
   line("resolution", resolution.data());
   line("frames",
        std::to_string(info.frames_fused) + " fused of " + std::to_string(info.frames_read) + " read");
@@ -178,6 +222,7 @@ std::string describe(const MapInfo& info) {
   line("mesh", std::to_string(info.triangles) + " triangles, " + std::to_string(info.vertices) + " vertices");
   line("database", std::to_string(info.keyframes) + " keyframes");
   line("trajectory", std::to_string(info.poses) + " poses");
+  if (info.revision > 0) line("revision", std::to_string(info.revision));
   for (const auto& [name, file] : info.files) line(name.c_str(), in_megabytes(file.bytes));
   for (const auto& [name, value] : info.settings) line(name.substr(0, 15).c_str(), value);
   line("format", std::to_string(info.format_version) + ", by roomradar " + info.tool_version);
@@ -190,6 +235,16 @@ std::string to_json(const MapInfo& info) {
   json["format_version"] = info.format_version;
   json["tool_version"] = info.tool_version;
   json["source"] = info.source;
+  json["id"] = info.id;
+  json["created"] = info.created;
+  json["changed"] = info.changed;
+  json["sessions"] = Json::array();
+  for (const MapSession& session : info.sessions)
+    json["sessions"].push_back({{"source", session.source},
+                                {"source_id", session.source_id},
+                                {"made_at", session.made_at},
+                                {"frames_read", session.frames_read},
+                                {"frames_fused", session.frames_fused}});
   json["resolution_m"] = info.resolution_m;
   json["frames_read"] = info.frames_read;
   json["frames_fused"] = info.frames_fused;
@@ -208,6 +263,8 @@ std::string to_json(const MapInfo& info) {
   json["mesh"] = {{"vertices", info.vertices}, {"triangles", info.triangles}};
   json["keyframes"] = info.keyframes;
   json["poses"] = info.poses;
+  json["revision"] = info.revision;
+  json["parent_revision"] = info.parent_revision;
   json["settings"] = Json::object();
   for (const auto& [name, value] : info.settings) json["settings"][name] = value;
   json["files"] = Json::object();
@@ -230,6 +287,10 @@ MapInfo parse_map_info(const std::string& text, const std::string& where) {
   info.format_version = static_cast<int>(version);
   info.tool_version = fields.text("tool_version");
   info.source = fields.text("source");
+  if (version >= kFirstWithIdentity)
+    read_identity(fields, info);
+  else
+    name_sessions(info);
   info.resolution_m = fields.number("resolution_m");
   if (!(info.resolution_m >= 0.001 && info.resolution_m <= 1.0))
     fields.fail("\"resolution_m\" is not between 0.001 and 1");

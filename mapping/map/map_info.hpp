@@ -4,13 +4,14 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "mapping/octree/static_map.hpp"
 #include "mapping/surface/surface_extraction.hpp"
 
 namespace roomradar {
 
-inline constexpr int kMapFormatVersion = 4;
+inline constexpr int kMapFormatVersion = 5;
 
 // Keys of MapInfo::settings that are read back.
 inline constexpr const char* kDeviationSetting = "deviation_m";       ///< SurfaceConfig::max_deviation_m
@@ -23,9 +24,23 @@ struct MapFile {
   std::string sha256;  ///< 64 hexadecimal digits
 };
 
+/// One scan, or one merged map, from which a map was made.
+struct MapSession {
+  std::string source;     ///< recording or device, without folders
+  std::string source_id;  ///< see source_id_of()
+  std::string made_at;    ///< in UTC, as Visit::made_at
+  std::int64_t frames_read = 0;
+  std::int64_t frames_fused = 0;
+};
+
+/// Returns 16 hexadecimal digits by which the same recording at the same place is known again. They do not
+/// tell the place.
+std::string source_id_of(const std::string& source);
+
 /// Content of map.json. save_map() and load_map() set format_version and all fields declared after it.
 struct MapInfo {
-  std::string source;  ///< recordings (full paths) or devices, separated by "; "
+  std::string source;                ///< recordings or devices, without folders, separated by "; "
+  std::vector<MapSession> sessions;  ///< in order; empty: saved by an earlier version
   std::int64_t frames_read = 0;
   std::int64_t frames_fused = 0;
   std::string up_source = "none";  ///< accelerometer, plane, given or none
@@ -33,6 +48,9 @@ struct MapInfo {
   Eigen::Isometry3d T_world_recorded = Eigen::Isometry3d::Identity();
   std::map<std::string, std::string> settings;  ///< prescan's settings, by name
 
+  std::string id;       ///< UUID, the same for all revisions; empty: saved by an earlier version
+  std::string created;  ///< when the first revision was saved, as Visit::made_at; empty: not known
+  std::string changed;  ///< when this revision was saved
   int format_version = kMapFormatVersion;
   std::string tool_version;
   double resolution_m = 0.0;
@@ -41,6 +59,8 @@ struct MapInfo {
   std::uint64_t triangles = 0;
   std::uint64_t keyframes = 0;
   std::uint64_t poses = 0;
+  int revision = 0;  ///< number of this revision of the map (Visit::revision); 0: saved by an earlier version
+  int parent_revision = 0;  ///< revision that was in the folder before; 0: none
   /// Size and checksum by file name. The names are in map_files.hpp.
   std::map<std::string, MapFile> files;
 };

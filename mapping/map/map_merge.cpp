@@ -147,6 +147,8 @@ void append_session(SavedMap& map, const SavedMap& session) {
                                                 session.keyframe_database.load().keyframes.begin(),
                                                 session.keyframe_database.load().keyframes.end());
   map.info.source += "; " + session.info.source;
+  map.info.sessions.insert(map.info.sessions.end(), session.info.sessions.begin(),
+                           session.info.sessions.end());
   if (const auto stopped = session.info.settings.find(kStoppedSetting);
       stopped != session.info.settings.end())
     map.info.settings.insert(*stopped);

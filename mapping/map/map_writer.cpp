@@ -1,12 +1,18 @@
 // map_writer.cpp: writes the parts of a map, then map.json with their sizes and checksums.
 #include "mapping/map/map_writer.hpp"
 
+#include <algorithm>
+#include <cstdlib>
 #include <memory>
+#include <optional>
+#include <random>
 #include <string>
 #include <system_error>
 #include <vector>
 
+#include "mapping/history/visits.hpp"
 #include "mapping/localization/keyframe_database.hpp"
+#include "mapping/map/map_history.hpp"
 #include "mapping/map/map_info.hpp"
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/storage/sha256.hpp"
@@ -30,24 +36,29 @@ void require_savable(const std::filesystem::path& target, const Mesh& mesh) {
          " is the most; take a larger --deviation, or a coarser --resolution.");
 }
 
-/// Copies the objects that are kept in the room, if there are any.
-void carry_objects(const std::filesystem::path& from, const std::filesystem::path& map) {
+/// Returns the description of the map at `folder`; nullopt if there is none that can be read.
+std::optional<MapInfo> present_info(const std::filesystem::path& folder) {
   std::error_code fault;
-  if (from.empty() || !std::filesystem::is_directory(from, fault)) return;
-  const std::filesystem::path to = map / kMapObjectsFolder;
-  make_folder(to);
-  for (const std::filesystem::directory_entry& entry : std::filesystem::directory_iterator(from, fault)) {
-    if (!entry.is_regular_file(fault)) continue;
-    const std::filesystem::path copy = to / entry.path().filename();
-    std::filesystem::create_hard_link(entry.path(), copy, fault);  // files there are replaced, never changed
-    if (!fault) continue;
-    fault.clear();
-    std::filesystem::copy_file(entry.path(), copy, fault);
-    if (fault) throw Error(entry.path().string() + ": cannot be copied: " + system_reason(fault));
-    sync_to_disk(copy);
+  if (!std::filesystem::exists(folder / kMapInfoFile, fault)) return std::nullopt;
+  try {
+    return load_map_info(folder);
+  } catch (const Error&) {
+    return std::nullopt;  // a damaged map has no revision that could be restored
   }
-  if (fault) throw Error(from.string() + ": cannot be listed: " + system_reason(fault));
-  sync_to_disk(to);
+}
+
+/// Returns a random UUID. With SOURCE_DATE_EPOCH set it follows from the time and the map's octree, so that a
+/// map that is made again has the same bytes. Source: RFC 4122, version 4.
+std::string new_map_id(const std::string& octree_sha256) {
+  std::string seed = time_of_visit() + octree_sha256;
+  std::random_device random;
+  if (std::getenv("SOURCE_DATE_EPOCH") == nullptr)
+    for (int i = 0; i < 8; ++i) seed += std::to_string(random());
+  std::string id = sha256_of(seed).substr(0, 32);
+  id[12] = '4';
+  id[16] = "89ab"[static_cast<unsigned char>(id[16]) % 4];
+  for (const std::size_t at : {20U, 16U, 12U, 8U}) id.insert(at, "-");
+  return id;
 }
 
 }  // namespace
@@ -80,7 +91,9 @@ LazyPart<StaticMap> MapWriter::write_octree(const StaticMap& octree, const Mesh&
 
 void MapWriter::commit(const SavedMap& map) {
   require_savable(target_, map.mesh);
+  const VisitsLock lock(target_);
   const std::filesystem::path& path = begin();
+  const std::optional<MapInfo> before = present_info(target_);
   if (!keyframes_) write_keyframes(map.keyframe_database.load());
   if (!resolution_m_) write_octree(map.octree.load(), map.mesh);
   write_mesh(map.mesh, path / kMapMeshFile);
@@ -109,7 +122,17 @@ void MapWriter::commit(const SavedMap& map) {
   if (texture) parts.insert(parts.end(), {kMapTextureFile, kMapTexturePointsFile});
   for (const std::string& part : parts)
     info.files[part] = {std::filesystem::file_size(path / part), sha256_of_file(path / part)};
+  const RevisionFiles replaced = before ? revision_files(target_, *before) : RevisionFiles();
+  info.changed = time_of_visit();
+  info.created = before ? before->created : info.changed;
+  info.id = before && !before->id.empty() ? before->id : new_map_id(info.files.at(kMapOctreeFile).sha256);
+  info.revision = before ? map_visits(target_).back().revision + 1 : 1;
+  // The map was made from the one that it replaces, or is another scan in its place.
+  info.parent_revision = before ? std::max(before->revision, 1) : 0;
   write_bytes(path / kMapInfoFile, to_json(info));
+  VisitNote note = map.made;
+  if (note.made_by.empty()) note.made_by = "saved";
+  record_visit(target_, replaced, path, revision_files(path, info), note);
 
   partial_->commit();
 }

@@ -15,7 +15,8 @@ namespace roomradar {
 
 /// Writes the map to folder.partial-PID, syncs that folder to disk, and renames it to `folder` atomically.
 /// Extracts the border of unknown space from map.octree and map.mesh, and writes it to unknown.bin. A texture
-/// that does not fit the mesh is left out. Afterwards `folder` is the complete new map or, after an Error,
+/// that does not fit the mesh is left out. A map that was in `folder` stays as an earlier revision (see
+/// map_history.hpp). Afterwards `folder` is the complete new map or, after an Error,
 /// unchanged. Creates parent folders. Throws Error if `folder` exists and is not a map, the map has no
 /// surface or too many triangles, or the disk fails.
 void save_map(const std::filesystem::path& folder, const SavedMap& map);

@@ -31,6 +31,7 @@ std::vector<Frame> posed_frames() {
     const Eigen::Isometry3d eye = test::on_path(i, 2 * kFrames);
     frames.push_back(test::frame_at(eye, i));
     frames.back().T_world_camera = eye;
+    frames.back().stamp_s = 0.2 * i;  // no camera goes so far in 1/30 s
   }
   return frames;
 }

@@ -13,6 +13,10 @@ void add_map_argument(CLI::App& command, std::string& map) {
   command.add_option("DIR", map, "folder of the map of a room or a building (required)")->required();
 }
 
+void add_room_argument(CLI::App& command, std::string& map) {
+  command.add_option("DIR", map, "folder of the map of a room (required)")->required();
+}
+
 }  // namespace
 
 void add_options(CLI::App& command, MapInfoOptions& options) {
@@ -37,7 +41,7 @@ void add_options(CLI::App& command, MapExportOptions& options) {
 }
 
 void add_options(CLI::App& command, MapObjectsOptions& options) {
-  command.add_option("DIR", options.map, "folder of the map of a room (required)")->required();
+  add_room_argument(command, options.map);
   command.add_option("ACTION", options.action, "list, remove NAME, or rename OLD NEW (default: list)")
       ->check(CLI::IsMember({"list", "remove", "rename"}));
   command.add_option("NAME", options.names, "names of objects, for the action (default: none)");
@@ -48,6 +52,63 @@ void complete_options(const CLI::App& /*command*/, const MapObjectsOptions& opti
   if (options.names.size() != wanted)
     throw CLI::ValidationError("map objects DIR " + options.action + ": takes " + std::to_string(wanted) +
                                " names, " + std::to_string(options.names.size()) + " are given");
+}
+
+void add_options(CLI::App& command, MapLogOptions& options) {
+  add_room_argument(command, options.map);
+  command.add_flag("--json", options.json, "print all of it as JSON, for other programs (default: off)");
+}
+
+void add_options(CLI::App& command, MapRestoreOptions& options) {
+  command
+      .add_option("DIR@N", options.revision,
+                  "folder of a room's map, and the number of a revision (required)")
+      ->required();
+}
+
+void add_options(CLI::App& command, MapUndoOptions& options) { add_room_argument(command, options.map); }
+
+void add_options(CLI::App& command, MapPruneOptions& options) {
+  add_room_argument(command, options.map);
+  command.add_option("--keep", options.keep, "number of revisions that stay, the latest ones (required)")
+      ->required()
+      ->check(whole_within(1, 1'000'000))
+      ->type_name("N");
+}
+
+void add_options(CLI::App& command, MapListOptions& options) {
+  command.add_option("FOLDER", options.folder, "folder that holds maps (default: maps)");
+  command.add_flag("--json", options.json, "print the list as JSON, for other programs (default: off)");
+}
+
+void add_options(CLI::App& command, MapCopyOptions& options) {
+  add_room_argument(command, options.map);
+  command.add_option("TO", options.to, "folder for the copy; must not exist (required)")->required();
+}
+
+void add_options(CLI::App& command, MapRenameOptions& options) {
+  add_room_argument(command, options.map);
+  command.add_option("TO", options.to, "new path of the folder; must not exist (required)")->required();
+}
+
+void add_options(CLI::App& command, MapDeleteOptions& options) {
+  add_room_argument(command, options.map);
+  command.add_flag("--for-good", options.for_good,
+                   "delete the map instead of moving it to the trash, ~/.local/share/Trash (default: off)");
+}
+
+void add_options(CLI::App& command, MapPackOptions& options) {
+  add_room_argument(command, options.map);
+  command.add_option("FILE", options.file, "file to write; its name must end in .rrm (required)")->required();
+}
+
+void add_options(CLI::App& command, MapUnpackOptions& options) {
+  command.add_option("FILE", options.file, "file that `map pack` wrote (required)")->required();
+  command
+      .add_option("--map", options.map,
+                  "folder for the map; must not exist (default: in this folder, with the name it had when\n"
+                  "it was packed)")
+      ->type_name("DIR");
 }
 
 void add_options(CLI::App& command, MapMergeOptions& options) {

@@ -1,4 +1,4 @@
-// map_options.hpp: options of `roomradar map info|verify|export|objects|merge|diff`, `building` and `serve`.
+// map_options.hpp: options of `roomradar map`, `building` and `serve`.
 #pragma once
 #include <optional>
 #include <string>
@@ -41,6 +41,72 @@ struct MapObjectsOptions {
   std::string action = "list";
   /// Names for the action: none, the object, or its old and new name.
   std::vector<std::string> names;
+};
+
+struct MapLogOptions {
+  /// Map folder whose revisions are listed.
+  std::string map;
+  /// True: prints JSON.
+  bool json = false;
+};
+
+struct MapListOptions {
+  /// Folder that holds maps.
+  std::string folder = "maps";
+  /// True: prints JSON.
+  bool json = false;
+};
+
+struct MapRestoreOptions {
+  /// Revision to restore, as `FOLDER@N`.
+  std::string revision;
+};
+
+struct MapUndoOptions {
+  /// Map folder.
+  std::string map;
+};
+
+struct MapPruneOptions {
+  /// Map folder.
+  std::string map;
+  /// Number of revisions that stay.
+  int keep = 1;
+};
+
+struct MapCopyOptions {
+  /// Map folder to copy.
+  std::string map;
+  /// Map folder to make.
+  std::string to;
+};
+
+struct MapRenameOptions {
+  /// Map folder to move.
+  std::string map;
+  /// Its new path.
+  std::string to;
+};
+
+struct MapDeleteOptions {
+  /// Map folder to delete.
+  std::string map;
+  /// True: deletes the map instead of moving it to the trash.
+  bool for_good = false;
+};
+
+struct MapPackOptions {
+  /// Map folder to pack.
+  std::string map;
+  /// File to write, with the extension .rrm.
+  std::string file;
+};
+
+struct MapUnpackOptions {
+  /// File that `map pack` wrote.
+  std::string file;
+  /// Map folder to make; empty: in the current folder, with the map's name when it was packed.
+  std::string map;
 };
 
 struct MapMergeOptions {
@@ -111,6 +177,26 @@ void add_options(CLI::App& command, MapExportOptions& options);
 void add_options(CLI::App& command, MapObjectsOptions& options);
 /// Checks the number of names. Call after parsing. Throws CLI::ValidationError for wrong usage.
 void complete_options(const CLI::App& command, const MapObjectsOptions& options);
+/// Adds the options of `map log`.
+void add_options(CLI::App& command, MapLogOptions& options);
+/// Adds the options of `map restore`.
+void add_options(CLI::App& command, MapRestoreOptions& options);
+/// Adds the options of `map undo`.
+void add_options(CLI::App& command, MapUndoOptions& options);
+/// Adds the options of `map prune`.
+void add_options(CLI::App& command, MapPruneOptions& options);
+/// Adds the options of `map list`.
+void add_options(CLI::App& command, MapListOptions& options);
+/// Adds the options of `map copy`.
+void add_options(CLI::App& command, MapCopyOptions& options);
+/// Adds the options of `map rename`.
+void add_options(CLI::App& command, MapRenameOptions& options);
+/// Adds the options of `map delete`.
+void add_options(CLI::App& command, MapDeleteOptions& options);
+/// Adds the options of `map pack`.
+void add_options(CLI::App& command, MapPackOptions& options);
+/// Adds the options of `map unpack`.
+void add_options(CLI::App& command, MapUnpackOptions& options);
 /// Adds the options of `map merge`.
 void add_options(CLI::App& command, MapMergeOptions& options);
 /// Adds the options of `map diff`.

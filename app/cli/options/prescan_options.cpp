@@ -75,6 +75,9 @@ void add_interruption_options(CLI::App& command, PrescanOptions& options) {
       "--resume", options.resume,
       "continue the interrupted scan of this map (DIR.unfinished); if there is none, extend the\n"
       "map in DIR with the frames of SOURCE (default: off)");
+  command.add_flag("--replace", options.replace,
+                   "replace the map in DIR by this scan; the present one stays as an earlier revision, see\n"
+                   "`roomradar map log` (default: off: an existing map is not replaced)");
   command
       .add_option(
           "--checkpoint-every", options.checkpoint_every_s,

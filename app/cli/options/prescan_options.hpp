@@ -59,6 +59,8 @@ struct PrescanOptions {
   bool texture = true;
   /// True: continues an interrupted scan, or extends an existing map.
   bool resume = false;
+  /// True: replaces an existing map, which stays as an earlier revision.
+  bool replace = false;
   /// Time between checkpoints; 0: no checkpoints.
   double checkpoint_every_s = 2.5;
   /// Max memory of the process, 10^6 bytes; 0: unlimited.

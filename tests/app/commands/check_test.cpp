@@ -79,8 +79,9 @@ class Check : public ::testing::Test {
   }
   static json prescanned(const fs::path& recording, std::vector<std::string> more) {
     const fs::path report = folder_ / "report.json";
-    more.insert(more.begin(), {"prescan", recording.string(), "--map", (folder_ / "map").string(),
-                               "--resolution", "0.04", "--texture", "off", "--report", report.string()});
+    more.insert(more.begin(),
+                {"prescan", recording.string(), "--map", (folder_ / "map").string(), "--resolution", "0.04",
+                 "--texture", "off", "--report", report.string(), "--replace"});
     const Outcome outcome = roomradar(more);
     EXPECT_EQ(outcome.status, 0) << outcome.out;
     std::ifstream file(report);

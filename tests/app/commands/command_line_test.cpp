@@ -698,9 +698,10 @@ TEST_F(CommandLine, HelpExplainsCommandsAndTopics) {
 }
 
 TEST_F(CommandLine, EveryHelpHasGroupsOfKnownOptionsAndTwoExamples) {
-  for (const char* command :
-       {"start", "prescan", "run", "building", "serve", "record", "simulate", "calibrate", "fallthrough",
-        "farm", "trade", "doctor", "map info", "map verify", "map export", "map merge", "map diff"}) {
+  for (const char* command : {"start",    "prescan",    "run",         "building",  "serve",     "record",
+                              "simulate", "calibrate",  "fallthrough", "farm",      "trade",     "doctor",
+                              "map info", "map verify", "map export",  "map merge", "map diff",  "map list",
+                              "map copy", "map rename", "map delete",  "map pack",  "map unpack"}) {
     const std::string help = roomradar(std::string(command) + " --help").out;
     EXPECT_GE(lines_with(help, std::string("roomradar ") + command + " ") +
                   lines_with(help, std::string("roomradar ") + command + "\n"),
@@ -1044,7 +1045,7 @@ TEST_F(CommandLine, ABrokenMapIsRefusedAndTheFileNamed) {
   }
   const fs::path later = broken_copy();
   std::string json = read_text(later / "map.json");
-  const std::size_t at = json.find("\"format_version\": 4");
+  const std::size_t at = json.find("\"format_version\": 5");
   ASSERT_NE(at, std::string::npos) << json.substr(0, 300);
   json.replace(at, 19, "\"format_version\": 9");
   std::ofstream(later / "map.json", std::ios::binary) << json;

@@ -115,6 +115,8 @@ class DeferredErrors : public ::testing::Test {
             {"map", "export", made, d + "/m.glb"},
             {"map", "export", made, d + "/old.bt"},
             {"map", "export", made, d + "/m.ot"},
+            {"map", "copy", made, d + "/copy"},
+            {"map", "pack", made, d + "/m.rrm"},
             {"map", "diff", made, made, "--report", d + "/old.json"},
             {"map", "diff", made, made, "--picture", d + "/old.png"}};
   }

@@ -5,6 +5,7 @@
 # usage: scan_window_test.sh ROOMRADAR [FOLDER]     FOLDER keeps the screenshots; exit status 77: something is not installed
 set -euo pipefail
 program=$1
+export SOURCE_DATE_EPOCH=1700000000  # maps saved twice have the same bytes
 source "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/virtual_screen.sh"
 require_tools
 shots=${2:-$work}

@@ -357,7 +357,7 @@ TEST_F(MapFolder, VerifyListsEveryFaultAtOnce) {
 }
 
 TEST_F(MapFolder, ALaterFormatIsRefusedWithAdvice) {
-  edit_info("\"format_version\": 4", "\"format_version\": 5");
+  edit_info("\"format_version\": 5", "\"format_version\": 6");
   expect_fault("map.json", "use a later roomradar");
 }
 
@@ -375,7 +375,7 @@ TEST_F(MapFolder, MapsOfEarlierFormatsAreReadAndSavedInThisOne) {
       EXPECT_TRUE(text_of(exported) == text_of(map_ / name)) << name;
     }
     save_map(map_, read);
-    EXPECT_EQ(load_map_info(map_).format_version, 4);
+    EXPECT_EQ(load_map_info(map_).format_version, kMapFormatVersion);
     EXPECT_FALSE(fs::exists(map_ / "octree.ot"));
     EXPECT_EQ(verify_map(map_), std::vector<std::string>{});
     test::expect_equal(load_map(map_).octree.load(), room_.octree.load());
