@@ -161,7 +161,8 @@ class Maps(unittest.TestCase):
         self.assertEqual(changes[0].surface_world.shape[1], 3)
 
         extended = rr.prescan(room + "&crate=1", poses="recorded", texture=False, extend=a)
-        extended.map.save(folder / "extended")
+        shutil.copytree(folder / "a", folder / "extended")
+        extended.map.save(folder / "extended")  # a revision of the same map, as the command's
         support.command("prescan", room + "&crate=1", "--poses", "recorded", "--texture", "off", "--map", folder / "a",
                         "--resume")
         self.assertEqual(support.files_of(folder / "extended"), support.files_of(folder / "a"))
