@@ -213,7 +213,11 @@ class Restorer {
         fail("cannot be restored bit by bit; is the zstd library another one than when it was saved?");
       return bytes;
     }
-    return read_file(folder_ / name);
+    std::string bytes = read_file(folder_ / name);
+    const auto file = files_.find(name);
+    if (file == files_.end() || (!file->second.sha256.empty() && sha256_of(bytes) != file->second.sha256))
+      fail("was replaced while it was read; try again");
+    return bytes;
   }
 
   /// Calls with the checksum of each block in the store that a revision uses, without its data blocks that
@@ -421,6 +425,7 @@ int prune_visits(const fs::path& folder, const RevisionFiles& files, int keep) {
   AtomicFile log(folder / kVisitsLog);
   log.stream() << text;
   log.commit();
+  const VisitsLock lock_of_new_log(folder);
   const fs::path fewer = folder / (std::string(kVisitsBlocks) + ".new");
   fs::remove(fewer);
   {

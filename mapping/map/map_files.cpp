@@ -45,8 +45,7 @@ void require_replaceable(const fs::path& folder) {
     const std::string name = entry.path().filename().string();
     if (is_litter(name)) continue;
     empty = false;
-    if (name != kMapInfoFile && name != kMapObjectsFolder && name != kVisitsLog && name != kVisitsBlocks &&
-        !is_map_part(name))
+    if (!is_map_entry(name))
       refuse(folder, "exists and holds \"" + name +
                          "\", which is not part of a map; choose another name for the map");
   }

@@ -153,6 +153,17 @@ TEST_F(MapHistory, AMapHasAnIdentityAndNoPathsOfTheMachine) {
   fs::remove_all(at("recording"));
 }
 
+TEST_F(MapHistory, WhatAKilledPruneLeftHindersNothing) {
+  ASSERT_EQ(visit(), 0) << said();
+  for (const char* left : {"visits.bin.new", "visits.jsonl.partial-12345"})
+    std::ofstream(at("map") / left) << "cut";
+  EXPECT_EQ(program({"map", "verify", map()}), 0) << said();
+  ASSERT_EQ(program({"map", "prune", map(), "--keep", "2"}), 0) << said();
+  ASSERT_EQ(program({"map", "undo", map()}), 0) << said();
+  for (const char* left : {"visits.bin.new", "visits.jsonl.partial-12345"})
+    EXPECT_FALSE(fs::exists(at("map") / left)) << left;
+}
+
 TEST_F(MapHistory, KilledWhileItSavesTheMapIsWhole) {
   const auto before = contents(map());
   ASSERT_EQ(visit(), 0) << said();
