@@ -262,8 +262,13 @@ std::vector<MovedThing> find_moved_things(const std::vector<Change>& changes, co
                        (found.T_now_before * before.middle - before.middle).norm(), found.least});
     }
   }
+  // Of things that look alike, such as chairs, each went to the place that is nearer.
+  const auto likelihood = [](const MovedThing& pair) {
+    constexpr double kPer_m = 0.05, kPerHalfTurn = 0.1;
+    return pair.same_shape - kPer_m * pair.moved_m - kPerHalfTurn * std::abs(pair.turned_deg) / 180.0;
+  };
   std::stable_sort(pairs.begin(), pairs.end(),
-                   [](const MovedThing& a, const MovedThing& b) { return a.same_shape > b.same_shape; });
+                   [&](const MovedThing& a, const MovedThing& b) { return likelihood(a) > likelihood(b); });
   std::vector<MovedThing> moved;
   std::set<std::size_t> used;
   for (const MovedThing& pair : pairs) {

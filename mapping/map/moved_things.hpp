@@ -27,9 +27,10 @@ using SharedSurface = std::function<bool(const Eigen::Vector3d& p_world)>;
 /// @param T_b_a  from a's world frame, that of the changes, to b's. Both maps must outlive the result
 SharedSurface surface_of_both(const StaticMap& a, const StaticMap& b, const Eigen::Isometry3d& T_b_a);
 
-/// Returns the moved things, most alike first. A change is part of at most one. Two surfaces have one shape
-/// if, at the best place and turn, 55 % of each are within 3 cm of the other, and 75 % of one of them: both
-/// scans saw a thing from some sides only. Things smaller than 20 surface points are not compared.
+/// Returns the moved things, those that are most alike and moved least first. A change is part of at most
+/// one. Two surfaces have one shape if, at the best place and turn, 55 % of each are within 3 cm of the
+/// other, and 75 % of one of them: both scans saw a thing from some sides only. Things smaller than 20
+/// surface points are not compared.
 /// @param shared  tells where a thing that was moved by less than its size covers its own old place: there it
 ///                neither vanished nor appeared; null: nowhere
 std::vector<MovedThing> find_moved_things(const std::vector<Change>& changes,
