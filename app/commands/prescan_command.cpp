@@ -289,7 +289,7 @@ int scan_and_save(const PrescanOptions& options, ScanChannel* channel) {
                       [&] { report.times.timed("save", [&] { writer.commit(scanned.map); }); });
   if (before)
     report.times.timed("objects",
-                       [&] { follow_moved_supports(options, *before, load_map_octree(options.map)); });
+                       [&] { follow_moved_supports(options, *before, scanned.map.octree.load()); });
   report.results["ready_after_s"] = report.seconds() - timed.last_frame_s;
 
   Interrupt::say_when_ended("");  // the map is saved

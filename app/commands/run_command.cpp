@@ -104,12 +104,16 @@ std::optional<PlaceToScan> place_to_scan(const Session& session) {
   return std::nullopt;
 }
 
+RunOptions with_map(RunOptions options, const OpenedMap& opened) {
+  options.map = opened.folder().string();
+  return options;
+}
+
 }  // namespace
 
 int play(const RunOptions& options) {
   const OpenedMap opened(options.map);
-  RunOptions in_folder = options;
-  in_folder.map = opened.folder().string();
+  const RunOptions in_folder = with_map(options, opened);
   return play(*open_run(in_folder, nullptr));
 }
 
@@ -118,8 +122,7 @@ PlayResult play_in_window(const RunOptions& options) {
   for (const ObjectOption& object : options.objects)
     if (object.source.mesh != "teapot") meshes.push_back(object.source);
   const OpenedMap opened(options.map);
-  RunOptions in_folder = options;
-  in_folder.map = opened.folder().string();
+  const RunOptions in_folder = with_map(options, opened);
   PlayResult result;
   result.window = run_in_window("roomradar - " + options.source, meshes, options.budget_ms, options.ui_scale,
                                 [&](UiChannel& link) {

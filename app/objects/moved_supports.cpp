@@ -62,7 +62,7 @@ std::vector<std::optional<std::size_t>> supports_of(const std::vector<Footing>& 
   for (std::size_t i = 0; i < footings.size(); ++i)
     for (std::size_t c = 0; c < changes.size() && !on[i]; ++c)
       if (changes[c].kind == ChangeKind::kVanished && stands_on(footings[i], changes[c])) on[i] = c;
-  for (std::size_t level = 0; level < footings.size(); ++level)  // a pile has at most so many
+  for (std::size_t level = 0; level < footings.size(); ++level)  // of a pile, at most one per object
     for (std::size_t i = 0; i < footings.size(); ++i)
       for (std::size_t k = 0; k < footings.size() && !on[i]; ++k)
         if (on[k] && k != i && stands_on(footings[i], footings[k])) on[i] = on[k];

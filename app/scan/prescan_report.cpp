@@ -145,7 +145,7 @@ void print_summary(const PrescanOptions& options, const PrescanResult& scanned,
     }
     if (scanned.lost.size() > kShown) std::printf(" and %zu more spans", scanned.lost.size() - kShown);
     std::printf("\n");
-    constexpr std::int64_t kWorthAdvice = 20;  // at least one frame in so many
+    constexpr std::int64_t kWorthAdvice = 20;  // frames for each that would have jumped, at most
     if (counts.impossible_motion > 0)
       std::printf(
           "in %lld of these the camera would have jumped, so depth does not constrain their poses%s\n",

@@ -119,10 +119,10 @@ Visit visit_of(const std::string& line) {
 
 std::string read_file(const fs::path& path) { return read_bytes(path, "a file of a map"); }
 
-void write_log(const fs::path& folder, const std::vector<Visit>& visits) {
+std::string text_of(const std::vector<Visit>& visits) {
   std::string text;
   for (const Visit& visit : visits) text += line_of(visit);
-  write_bytes(folder / kVisitsLog, text);
+  return text;
 }
 
 /// Blocks of a file in its plain form. The plain form must outlive them.
@@ -198,7 +198,7 @@ class Restorer {
     return names;
   }
 
-  /// Returns a file of a revision, as it was.
+  /// Returns the bytes of a file of a revision.
   std::string restored(const Visit& visit, const std::string& name) {
     const auto fail = [&](const char* fault) {
       throw Error(folder_.string() + ": " + name + " of revision " + std::to_string(visit.revision) + " " +
@@ -401,7 +401,7 @@ Visit record_visit(const fs::path& folder, const RevisionFiles& files, const fs:
     store.append();
   }
   visits.push_back({latest + 1, time_of_visit(), note, {}});
-  write_log(next, visits);
+  write_bytes(next / kVisitsLog, text_of(visits));
   return visits.back();
 }
 
@@ -420,10 +420,8 @@ int prune_visits(const fs::path& folder, const RevisionFiles& files, int keep) {
   if (removed == 0) return 0;
   visits.erase(visits.begin(), visits.begin() + removed);
   // The log first: blocks that no revision uses do no harm.
-  std::string text;
-  for (const Visit& visit : visits) text += line_of(visit);
   AtomicFile log(folder / kVisitsLog);
-  log.stream() << text;
+  log.stream() << text_of(visits);
   log.commit();
   const VisitsLock lock_of_new_log(folder);
   const fs::path fewer = folder / (std::string(kVisitsBlocks) + ".new");
